@@ -29,7 +29,7 @@ from robosc.run.node_tests.steps import WAIT
 from robosc.run.node_tests.tour import Tour
 
 if TYPE_CHECKING:
-    from robosc.run.node_tests.steps import Place, Step
+    from robosc.run.node_tests.steps import Place, TourStep
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
 #: Seconds for each bound. In whole steps, the bound proved until then counts.
@@ -54,7 +54,7 @@ class TimelessPlan(Plan):
         """Return the duration of each timer in whole periods."""
         return [timer.milliseconds // self.period for timer in self._loop.engine.executed.timers]
 
-    def expiries(self, place: Place) -> dict[int, Step]:
+    def expiries(self, place: Place) -> dict[int, TourStep]:
         """Return the step that follows each running timer, as if that timer expired first."""
         loop, found = self._loop, {}
         for number in sorted(place.running):
@@ -70,7 +70,7 @@ class TimelessPlan(Plan):
 class Start(Tour):
     """Tour without a step, which sees only the goals before the first one."""
 
-    def _tour(self) -> list[Step]:
+    def _tour(self) -> list[TourStep]:
         super()._tour()
         return []
 
@@ -115,7 +115,7 @@ class Arc(NamedTuple):
     """Action of a run at a place: a step, or the expiry of a timer (`up`) without a wait, which is no step."""
 
     start: Place
-    step: Step
+    step: TourStep
     up: int | None
 
     def lets_run(self, timer: int, periods: int) -> int:

@@ -45,7 +45,7 @@ import robosc
 from robosc.m2t.models import Models
 from robosc.run.simulation import Simulation
 from robosc.tools import view
-from robosc.tools.view import serving
+from robosc.tools.view import http_server
 from robosc.tools.view.server import application
 
 if TYPE_CHECKING:
@@ -137,14 +137,14 @@ def flooding(model: Path, port: int, seconds: float) -> None:
                 events.append(f"message_{states[door]}{door}.u_response")
             components = {f"Door{door}": {"state": state, "variables": {}} for door, state in enumerate(states)}
             report = {"robot": "Doors", "time": number / _REPORTS, "components": components, "transitions": events}
-            live.told(json.dumps(report))
+            live.receive_report(json.dumps(report))
             await live.tell()
 
     def ready() -> None:
         asyncio.get_running_loop().flood = asyncio.ensure_future(flood())  # type: ignore[attr-defined]  # keeps it
 
     live.heard(1)
-    serving.serve(served, serving.listen("127.0.0.1", port), ready)
+    http_server.serve(served, http_server.listen("127.0.0.1", port), ready)
 
 
 def flooded(browser: Any, model: Path, seconds: float) -> None:

@@ -215,14 +215,14 @@ def generate(
     if into is not None and not known[target].can_be_included:
         raise ValueError(f"{target} is not code that can be part of {into}")
     configuration = configuration or Configuration()
-    made = known[target]
+    generator = known[target]
     with together():
-        findings = made.findings(models, configuration)
+        findings = generator.findings(models, configuration)
         if has_errors(findings):
             raise ModelError(findings)
         tests = None
         if with_tests:
             from robosc.run.node_tests.trace_test import trace_test_of
 
-            tests = trace_test_of(made, models, configuration)
-        return made.files(models, configuration, tests, into=into)
+            tests = trace_test_of(generator, models, configuration)
+        return generator.files(models, configuration, tests, into=into)

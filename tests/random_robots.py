@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from random import Random
 from typing import Any
 
-from robosc.model.semantics.naming import ROBOSC_KEYWORDS, written
+from robosc.model.semantics.naming import ROBOSC_KEYWORDS, escape_keyword
 
 #: Names that are words of some language, look like generated names, or are equal after joining.
 ODD_NAMES = (
@@ -129,7 +129,7 @@ class Writer:
 
     def name(self, plain: str) -> str:
         """Return a name that is unique in the robot."""
-        return written(self.odd_names.pop()) if self.odd_names and self.random.randrange(3) == 0 else plain
+        return escape_keyword(self.odd_names.pop()) if self.odd_names and self.random.randrange(3) == 0 else plain
 
     def robot(self, name: str) -> str:
         imports = [self.imported(number) for number in self.many(2)]

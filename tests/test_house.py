@@ -225,3 +225,34 @@ def test_what_docstrings_of_packages_name_is_there() -> None:
             if name not in stems and not there:
                 missing += [] if any(map(defined.search, texts)) else [f"{path.relative_to(ROOT)}: {name}"]
     assert missing == []
+
+
+#: Participles that tell how a thing came about. A name tells what the thing is.
+PARTICIPLES = {"asked", "found", "given", "held", "kept", "made", "read", "said", "stated", "told", "wanted"}
+#: Names of functions and classes: `read` is a verb there.
+PASSIVES = {*PARTICIPLES, "extended", "meant", "opened", "written"} - {"read"}
+#: Generated packages contain `trace_player`, so that a new name would change them.
+PARTICIPLES_STAY = {"run.node_tests.trace_player"}
+
+
+def participles(node: ast.AST) -> Iterator[str]:
+    """The forbidden names that a node of the syntax tree binds."""
+    match node:
+        case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name) | ast.ClassDef(name=name):
+            forbidden = PASSIVES
+        case ast.Name(id=name, ctx=ast.Store()) | ast.Attribute(attr=name, ctx=ast.Store()) | ast.arg(arg=name):
+            forbidden = PARTICIPLES
+        case ast.alias(asname=str(name)) | ast.ExceptHandler(name=str(name)):
+            forbidden = PARTICIPLES
+        case ast.MatchAs(name=str(name)) | ast.MatchStar(name=str(name)) | ast.MatchMapping(rest=str(name)):
+            forbidden = PARTICIPLES
+        case _:
+            return
+    if name.strip("_").lower() in forbidden:
+        yield name
+
+
+def test_names_say_what_a_thing_is() -> None:
+    bound = {(".".join(parts), name) for parts, nodes in modules() for node in nodes for name in participles(node)}
+    assert sorted((module, name) for module, name in bound if module not in PARTICIPLES_STAY) == []
+    assert {module for module, _ in bound} == PARTICIPLES_STAY

@@ -30,7 +30,7 @@ def test_all_of_them_are_collected() -> None:
             "robosc/schemas/state.schema.json",
             "editors/vscode/src/extension.ts",
         ),
-        *("web/src/commands.ts", "robosc/m2t/ros/ros2/templates/play_trace.py.j2", "robosc/language/completing.py"),
+        *("web/src/commands.ts", "robosc/m2t/ros/ros2/templates/play_trace.py.j2", "robosc/language/completion.py"),
     ):
         assert any(place.startswith(file) for place in places), file
 

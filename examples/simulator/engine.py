@@ -13,19 +13,19 @@ from pathlib import Path
 import robosc
 from robosc.language import configuration as config
 from robosc.language.configuration.parameters import controller_parameters, layer_parameters
-from robosc.model.semantics.messages import message_named
+from robosc.model.semantics.messages import find_message
 from robosc.run.runtime.core.controller import Controller
 from robosc.run.runtime.core.event_loop import EventLoop
 from robosc.run.runtime.core.layer import Layer
 from robosc.run.runtime.core.node_data import BLANK
-from robosc.run.runtime.core.port import CancelAnswer, Outcome
+from robosc.run.runtime.core.port import CancelAnswer, GoalOutcome
 from robosc.run.runtime.core.settings import SafeMessages, Settings
 
 from .playing import tell
 from .simulation import Answer, GoalNews
 
 EXAMPLES = Path(__file__).resolve().parents[1]
-OUTCOMES = {"succeeded": Outcome.SUCCEEDED, "canceled": Outcome.CANCELED, "aborted": Outcome.ABORTED}
+OUTCOMES = {"succeeded": GoalOutcome.SUCCEEDED, "canceled": GoalOutcome.CANCELED, "aborted": GoalOutcome.ABORTED}
 ZERO = {"x": 0.0, "y": 0.0, "z": 0.0}
 #: Fields with defaults.
 POSE = {"header": {"frame_id": ""}, "pose": {"position": ZERO, "orientation": {**ZERO, "w": 1.0}}}
@@ -129,7 +129,7 @@ class SupervisedNode:
             for layer_parameter in layer_parameters(graph, configuration, str(log))
         }
         self._event_loop = EventLoop(lambda: simulation.time)
-        safe = SafeMessages(on_blocked=[message_named(graph, name) for name in configuration.on_blocked])
+        safe = SafeMessages(on_blocked=[find_message(graph, name) for name in configuration.on_blocked])
         self._layer = Layer(graph, Settings(parameters, configuration), WorldPort(simulation), self._event_loop, safe)
         self._subscriptions = {subscription.topic: subscription for subscription in graph.subscriptions}
         self._sendings = {publisher.topic: publisher.sendings[0] for publisher in graph.publishers}

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Reason:
+class BlockReason:
     """Cause of an empty supervisor.
 
     `event` is the event at fault: an uncontrollable event that no supervisor can prevent, or a controllable event whose
@@ -42,18 +42,18 @@ class Reason:
     violated: tuple[sct.StatedRequirement, ...] = ()
 
 
-def reason_of_emptiness(system: SynthesizedSystem) -> Reason:
+def reason_of_emptiness(system: SynthesizedSystem) -> BlockReason:
     """Return why the initial state of a system without controlled states is not controlled."""
-    blocked = not (system.encoding.initial & system.found.alive[0]).satisfiable()
+    blocked = not (system.encoding.initial & system.solution.alive[0]).satisfiable()
     return _blocked_from_the_start(system) if blocked else _uncontrollable(system)
 
 
-def _uncontrollable(system: SynthesizedSystem) -> Reason:
-    encoding, found = system.encoding, system.found
+def _uncontrollable(system: SynthesizedSystem) -> BlockReason:
+    encoding, solution = system.encoding, system.solution
     # Initial states that reach no marked state at all do not show which event is uncontrollable.
-    start = pick(encoding.initial & found.alive[0], encoding.layout.state)
+    start = pick(encoding.initial & solution.alive[0], encoding.layout.state)
     before = encoding.state(unavoidable(system, start).states[-2])
-    blocked = found.rounds[0] & ~found.alive[0]
+    blocked = solution.rounds[0] & ~solution.alive[0]
     first = _path(system, system.moves, encoding.initial, before)
     last = _path(system, _uncontrollable_moves(system), before, blocked)
     event = last.moves[0][0].event
@@ -71,7 +71,7 @@ def _uncontrollable(system: SynthesizedSystem) -> Reason:
     return replace(reason, event=event, requirements=tuple(at_fault))
 
 
-def _blocked_from_the_start(system: SynthesizedSystem) -> Reason:
+def _blocked_from_the_start(system: SynthesizedSystem) -> BlockReason:
     encoding = system.encoding
     marked, path = encoding.all_marked & system.uncontrolled, None
     if marked.satisfiable():  # else the search would visit all states, layer by layer
@@ -87,7 +87,11 @@ def _blocked_from_the_start(system: SynthesizedSystem) -> Reason:
     for index, ((relation, _), codes, after) in enumerate(zip(path.moves, path.states, path.states[1:], strict=False)):
         if not system.is_in(codes, relation.requirement):
             reason = _described(system, unmarked, steps[: index + 1], codes)
-            at_fault = [requirement for requirement, asked in relation.asked.items() if not system.is_in(codes, asked)]
+            at_fault = [
+                requirement
+                for requirement, permission in relation.permissions.items()
+                if not system.is_in(codes, permission)
+            ]
             return replace(reason, event=relation.event, requirements=tuple(at_fault))
         violated = system.violated(after)
         if violated:
@@ -98,7 +102,7 @@ def _blocked_from_the_start(system: SynthesizedSystem) -> Reason:
 
 def _described(
     system: SynthesizedSystem, unmarked: Sequence[sct.Plant], steps: Sequence[TraceStep], codes: Codes
-) -> Reason:
+) -> BlockReason:
     """Return a reason without its event, with the state by name."""
     state: dict[str, Value] = {}
     for plant in system.model.plants:
@@ -106,7 +110,7 @@ def _described(
             state[plant.name] = value(plant, codes[plant])
         for variable in plant.variables:
             state[f"{plant.name}.{variable.name}"] = value(variable, codes[variable])
-    return Reason(None, tuple(unmarked), tuple(steps), state, codes)
+    return BlockReason(None, tuple(unmarked), tuple(steps), state, codes)
 
 
 @dataclass(frozen=True)
@@ -158,7 +162,7 @@ def unavoidable(system: SynthesizedSystem, start: Codes) -> Path:
     if the start itself reaches no marked state.
     """
     uncontrollable = _uncontrollable_moves(system)
-    rounds, alive = system.found.rounds, system.found.alive
+    rounds, alive = system.solution.rounds, system.solution.alive
     index = max(number for number, good in enumerate(rounds) if system.is_in(start, good))
     whole = Path([dict(start)], [])
 
@@ -183,25 +187,29 @@ def forbidden_from(system: SynthesizedSystem, codes: Codes) -> list[sct.Requirem
     return [
         requirement
         for relation in system.relations.values()
-        for requirement, asked in relation.asked.items()
-        if (onwards & relation.enabled & ~asked).satisfiable()
+        for requirement, permission in relation.permissions.items()
+        if (onwards & relation.enabled & ~permission).satisfiable()
     ]
 
 
-def forbidding(relation: EventRelation, states: Diagram) -> tuple[sct.Requirement, ...]:
+def requirements_at_fault(relation: EventRelation, states: Diagram) -> tuple[sct.Requirement, ...]:
     """Return the requirements at fault if an event is allowed in none of these states.
 
     These are all requirements that each disable the event in all states. If there is none, it is a minimal set of
     requirements that together disable it.
     """
-    alone = [requirement for requirement, asked in relation.asked.items() if not (states & asked).satisfiable()]
+    alone = [
+        requirement
+        for requirement, permitting in relation.permissions.items()
+        if not (states & permitting).satisfiable()
+    ]
     if alone:
         return tuple(alone)
-    together = dict(relation.asked)
-    for requirement in relation.asked:
+    together = dict(relation.permissions)
+    for requirement in relation.permissions:
         rest = states
-        for other, asked in together.items():
-            rest = rest if other is requirement else rest & asked
+        for other, permission in together.items():
+            rest = rest if other is requirement else rest & permission
         if not rest.satisfiable():
             del together[requirement]
     return tuple(together)

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.analysis.wording import NAMED, called, forbid, in_words, listed, name, violates, words
+from robosc.analysis.wording import NAMED, forbid, in_words, join_with_and, name, quote_requirements, violates, words
 from robosc.model import sct
 
 if TYPE_CHECKING:
-    from robosc.analysis.blocking import BlockingCounterexample, Reason
+    from robosc.analysis.blocking import BlockingCounterexample, BlockReason
 
 
-def blocking(reason: Reason) -> str:
+def describe_blocking(reason: BlockReason) -> str:
     """Return why there is no supervisor, as a sentence without its trace."""
     if reason.violated:
-        problem = violates(called(reason.violated), reason.violated)
+        problem = violates(quote_requirements(reason.violated), reason.violated)
         if reason.event is None:
             return f"{problem} from the start"
         if reason.event.controllable:
@@ -31,12 +31,14 @@ def blocking(reason: Reason) -> str:
     if len(reason.unmarked) > NAMED:
         named.append(f"{len(reason.unmarked) - NAMED} more")
     who = (
-        f"never in a marked state: {listed(named)}" if named else "each component can be marked, but never all at once"
+        f"never in a marked state: {join_with_and(named)}"
+        if named
+        else "each component can be marked, but never all at once"
     )
     return f"{problem}; {who}"
 
 
-def _stuck(plant: sct.Plant, reason: Reason) -> str:
+def _stuck(plant: sct.Plant, reason: BlockReason) -> str:
     state = reason.state.get(plant.name)
     return f"`{name(plant)}`" + (f" in `{state}`" if state is not None else "")
 
@@ -46,12 +48,11 @@ def counterexample_in_words(counterexample: BlockingCounterexample, model: sct.S
     steps = in_words(counterexample.trace, model)
     problem = "the marked states of all components cannot be reached together any more"
     if counterexample.unmarked:
-        problem = (
-            f"{listed([f'`{name(plant)}`' for plant in counterexample.unmarked])} cannot get back to a marked state"
-        )
+        unmarked = join_with_and([f"`{name(plant)}`" for plant in counterexample.unmarked])
+        problem = f"{unmarked} cannot get back to a marked state"
     if counterexample.violated:
         # Without line numbers: the sentence is part of generated code, which should change only if the robot does.
-        named = listed(
+        named = join_with_and(
             [
                 f"`{requirement.text}`" if requirement.text else "a requirement"
                 for requirement in counterexample.violated
@@ -73,4 +74,4 @@ def way_out(counterexample: BlockingCounterexample) -> str:
             return loosen
         return f"{loosen}: add a `needs` requirement for each command, or a command that undoes the event"
     stuck = [f"`{name(plant)}`" for plant in counterexample.unmarked if plant.kind == sct.PlantKind.behaviour]
-    return f"give {listed(stuck) or 'the components'} a way from there to a marked state"
+    return f"give {join_with_and(stuck) or 'the components'} a way from there to a marked state"

@@ -9,7 +9,7 @@ from robosc.analysis.observations import Forbidden
 from robosc.model import sct
 from robosc.model.semantics.edges import edges_of
 from robosc.model.semantics.roles import event_name
-from robosc.synthesis.encoding import referenced
+from robosc.synthesis.encoding import referenced_elements
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -23,14 +23,14 @@ if TYPE_CHECKING:
 
 def causes(observations: Observations) -> dict[Absent, set[Absent]]:
     """Return the direct causes of each absent event or state; a root cause has none."""
-    never = {found.event for found in observations.never_enabled}
-    unreached = {found.location for found in observations.unreachable_states}
-    found: dict[Absent, set[Absent]] = {}
+    never = {observed.event for observed in observations.never_enabled}
+    unreached = {observed.location for observed in observations.unreachable_states}
+    direct: dict[Absent, set[Absent]] = {}
     for event in observations.never_enabled:
-        found[event.event] = set(_of_event(event, never, unreached)) - {event.event}
+        direct[event.event] = set(_of_event(event, never, unreached)) - {event.event}
     for state in observations.unreachable_states:
-        found[state.location] = set(_of_state(state, never, unreached))
-    return found
+        direct[state.location] = set(_of_state(state, never, unreached))
+    return direct
 
 
 def _of_event(observed: NeverEnabled, never: set[sct.Event], unreached: set[sct.Location]) -> Iterator[Absent]:
@@ -42,7 +42,7 @@ def _of_event(observed: NeverEnabled, never: set[sct.Event], unreached: set[sct.
         yield from (other for other in never if event_name(other) == held_back)
     elif observed.forbidden is Forbidden.BY_REQUIREMENTS:
         for requirement in observed.requirements:
-            for plant in referenced(requirement.condition):
+            for plant in referenced_elements(requirement.condition):
                 # An automaton or order waits for an event that never happens.
                 if isinstance(plant, sct.Plant) and plant.kind == sct.PlantKind.requirement:
                     yield from {edge.event for edge in edges_of(plant)} & never
@@ -54,16 +54,16 @@ def _of_event(observed: NeverEnabled, never: set[sct.Event], unreached: set[sct.
 
 
 def _of_state(observed: UnreachableState, never: set[sct.Event], unreached: set[sct.Location]) -> Iterable[Absent]:
-    found = set()
+    reasons = set()
     for hindrance in observed.hindrances:
         source = hindrance.edge.eContainer()
         if hindrance.forbidden is None and source in unreached:
-            found.add(source)
+            reasons.add(source)
         elif hindrance.edge.event in never:
-            found.add(hindrance.edge.event)
+            reasons.add(hindrance.edge.event)
         else:
             return set()  # This transition has another cause.
-    return found
+    return reasons
 
 
 def with_causes(findings: Mapping[Absent, Diagnostic], follows: Mapping[Absent, set[Absent]]) -> list[Diagnostic]:

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any
 from robosc.analysis.blocking_in_words import counterexample_in_words, way_out
 from robosc.analysis.causes import causes, with_causes
 from robosc.analysis.observations import Forbidden
-from robosc.analysis.wording import called, condition, forbid, in_words, listed, name, words
+from robosc.analysis.wording import condition, forbid, in_words, join_with_and, name, quote_requirements, words
 from robosc.base.diagnostics import Diagnostic, Severity, in_order
 from robosc.model import sct
 from robosc.model.places import place
 from robosc.model.reflection import tree
 from robosc.model.semantics.edges import edges_from, edges_of
 from robosc.model.semantics.roles import plant_of
-from robosc.synthesis.encoding import referenced
+from robosc.synthesis.encoding import referenced_elements
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -50,8 +50,8 @@ def findings_of(model: sct.SupervisoryControlModel, observations: Observations) 
     words_for = _Findings(model)
     absent: dict[Absent, Diagnostic] = {}
     unused = _unused_of_libraries(model, observations)
-    absent |= {found.event: words_for.never_enabled(found) for found in observations.never_enabled}
-    absent |= {found.location: words_for.unreachable_state(found) for found in observations.unreachable_states}
+    absent |= {observed.event: words_for.never_enabled(observed) for observed in observations.never_enabled}
+    absent |= {observed.location: words_for.unreachable_state(observed) for observed in observations.unreachable_states}
     absent = {element: finding for element, finding in absent.items() if element not in unused}
     return in_order(
         [
@@ -74,19 +74,19 @@ def _unused_of_libraries(model: sct.SupervisoryControlModel, observations: Obser
     supervisor makes it unreachable.
     """
     unreached = {
-        found.location
-        for found in observations.unreachable_states
-        if _of_library(found.location, model)
-        and not any(_is_own_restriction(hindrance, model) for hindrance in found.hindrances)
+        observed.location
+        for observed in observations.unreachable_states
+        if _of_library(observed.location, model)
+        and not any(_is_own_restriction(hindrance, model) for hindrance in observed.hindrances)
     }
     if unreached:
         unreached -= _named_in_own_text(model)
     silent = {
-        found.event
-        for found in observations.never_enabled
-        if found.event.kind == sct.EventKind.tau
-        and _of_library(found.event, model)
-        and not _is_own_restriction(found, model)
+        observed.event
+        for observed in observations.never_enabled
+        if observed.event.kind == sct.EventKind.tau
+        and _of_library(observed.event, model)
+        and not _is_own_restriction(observed, model)
     }
     return {*unreached, *silent}
 
@@ -180,12 +180,12 @@ class _Findings:
 
     def _cancel_held_back(self, observed: SilentRestricted) -> Diagnostic:
         action, trace = name(plant_of(observed.event)), observed.counterexample
-        told = [requirement for requirement in trace.violated if isinstance(requirement, sct.Requirement)]
+        violated = [requirement for requirement in trace.violated if isinstance(requirement, sct.Requirement)]
         hint = way_out(trace)
-        if ends := [requirement for requirement in told if requirement.automaton is not None]:
+        if ends := [requirement for requirement in violated if requirement.automaton is not None]:
             hint = (
-                f"a start can be refused, a cancel cannot: take the end of `{action}` out of {called(ends)}, "
-                f"or restrict the start of `{action}`"
+                f"a start can be refused, a cancel cannot: take the end of `{action}` out "
+                f"of {quote_requirements(ends)}, or restrict the start of `{action}`"
             )
         return _finding(
             observed.event,
@@ -199,7 +199,7 @@ class _Findings:
     @staticmethod
     def self_cancelling(observed: SelfCancelling) -> Diagnostic:
         states = [f"`{name(plant)}.{state.name}`" for plant, state in _entered(observed.event)]
-        led = f"allow {listed(states)}, where its request leads" if states else "loosen its requirements"
+        led = f"allow {join_with_and(states)}, where its request leads" if states else "loosen its requirements"
         return _finding(
             _blamed(observed.requirements, observed.event),
             "self-cancelling",
@@ -210,7 +210,7 @@ class _Findings:
         )
 
     def forbidden_cancel(self, observed: ForbiddenCancel) -> Diagnostic:
-        action, requirement = name(plant_of(observed.event)), called([observed.requirement])
+        action, requirement = name(plant_of(observed.event)), quote_requirements([observed.requirement])
         return _finding(
             observed.requirement,
             "cancel-held-back",
@@ -235,12 +235,12 @@ class _Findings:
         plant = plant_of(observed.event)
         done = _DONE.get(plant.kind, "sent")
         edges = edges_of(observed.data)
-        read = [element for edge in edges for element in referenced(edge.guard)]
+        elements = [element for edge in edges for element in referenced_elements(edge.guard)]
         return _finding(
             observed.data,
             "provide-gap",
             f"`{name(plant)}` can be {done} without data, where no condition of its `provide` statements holds"
-            + _where(observed.example, [*read, *self._asking(observed.event)]),
+            + _where(observed.example, [*elements, *self._asking(observed.event)]),
             f"add `provide {name(plant)} with ...` without a condition, or a requirement that excludes this",
         )
 
@@ -295,34 +295,36 @@ class _Findings:
             return f"in `{here.name}` the guard of the {words(event)} never holds"
         others = [f"`{name(plant)}`" for plant in observed.plants]
         who = (
-            f"{listed(others)} never {'takes' if len(others) == 1 else 'take'} part" if others else "not all take part"
+            f"{join_with_and(others)} never {'takes' if len(others) == 1 else 'take'} part"
+            if others
+            else "not all take part"
         )
         return f"in `{here.name}` the {words(event)} never happens: {who} in it then"
 
     @cached_property
     def _required(self) -> dict[sct.Event, list[sct.Requirement]]:
-        found: dict[sct.Event, list[sct.Requirement]] = {}
+        required: dict[sct.Event, list[sct.Requirement]] = {}
         for requirement in self._model.requirements:
             if requirement.event is not None:
-                found.setdefault(requirement.event, []).append(requirement)
-        return found
+                required.setdefault(requirement.event, []).append(requirement)
+        return required
 
     def _requirements(self, event: sct.Event) -> list[sct.Requirement]:
         return self._required.get(event, [])
 
     @cached_property
     def _participants(self) -> dict[sct.Event, dict[sct.Plant, None]]:
-        found: dict[sct.Event, dict[sct.Plant, None]] = {}
+        participants: dict[sct.Event, dict[sct.Plant, None]] = {}
         for plant in self._model.plants:
             for edge in edges_of(plant):
-                found.setdefault(edge.event, {})[plant] = None
-        return found
+                participants.setdefault(edge.event, {})[plant] = None
+        return participants
 
     def _asking(self, event: sct.Event) -> Iterable[Element]:
         """Yield the elements that decide about an event: plants that take part, and data of its requirements."""
         yield from self._participants.get(event, ())
         for requirement in self._requirements(event):
-            yield from referenced(requirement.condition)
+            yield from referenced_elements(requirement.condition)
 
 
 def _likewise(second: str, others: Sequence[sct.Plant]) -> str:
@@ -331,7 +333,7 @@ def _likewise(second: str, others: Sequence[sct.Plant]) -> str:
         return ""
     shown = [f"`{name(plant)}`" for plant in others[:_NAMED]]
     more = len(others) - len(shown)
-    return f"; the same holds for `{second}` and {listed([*shown, f'{more} more'] if more else shown)}"
+    return f"; the same holds for `{second}` and {join_with_and([*shown, f'{more} more'] if more else shown)}"
 
 
 def _finding(element: Any, rule: str, message: str, hint: str, severity: Severity = Severity.WARNING) -> Diagnostic:
@@ -360,7 +362,7 @@ def _not_requested(observed: NeverEnabled) -> str:
     waiting = [f"`{name(plant)}`" for plant in observed.plants]
     if not waiting:
         return "the components that wait for its request never do so at the same time"
-    return f"{listed(waiting)} cannot reach a state that waits for its request"
+    return f"{join_with_and(waiting)} cannot reach a state that waits for its request"
 
 
 def _entered(event: sct.Event) -> Iterable[tuple[sct.Plant, sct.Location]]:
@@ -379,10 +381,10 @@ def _entered(event: sct.Event) -> Iterable[tuple[sct.Plant, sct.Location]]:
 def _where(example: Example, relevant: Iterable[Element]) -> str:
     """Return the example as text, restricted to relevant elements with several values."""
     chosen = set(relevant)
-    said = [
+    conditions = [
         (domain, value)
         for domain, value in example.state.items()
         if domain in chosen and not (isinstance(domain, sct.Plant) and len(domain.locations) == 1)
     ]
-    shown = f", for example where `{condition(said)}`" if said else ""
+    shown = f", for example where `{condition(conditions)}`" if conditions else ""
     return shown if example.quiescent else f"{shown}, at least until silent transitions have run"

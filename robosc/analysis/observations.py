@@ -8,7 +8,7 @@ from functools import cached_property
 from itertools import islice
 from typing import TYPE_CHECKING, TypeVar
 
-from robosc.analysis.blocking import BlockingCounterexample, blocking_counterexample, forbidding, never_ready
+from robosc.analysis.blocking import BlockingCounterexample, blocking_counterexample, never_ready, requirements_at_fault
 from robosc.analysis.paths import Layers, Path
 from robosc.model import sct
 from robosc.model.semantics.communication import RUNNING
@@ -48,8 +48,8 @@ class NeverEnabled:
     """Trigger or tau event that is allowed in no controlled state.
 
     `plants` each disable it in every controlled state. `requirements` disable it in all states in which the plants
-    enable it, even if these are outside of the controlled states: see `forbidding`. `trace` is then a shortest path of
-    the plants to one of these states, if an order, a count or an automaton is among the requirements.
+    enable it, even if these are outside of the controlled states: see `requirements_at_fault`. `trace` is then a
+    shortest path of the plants to one of these states, if an order, a count or an automaton is among the requirements.
 
     If `kept_away`, the plants disable the event only because the supervisor keeps the robot away from the states that
     enable it. A shortest path of the plants to such a state contains an event that the supervisor holds back. The
@@ -101,7 +101,7 @@ class SharedServer:
 class SelfCancelling:
     """Action, given by its trigger, whose requirement holds in no state directly after its start.
 
-    `requirements` are the requirements on it that hold in none of these states: see `forbidding`.
+    `requirements` are the requirements on it that hold in none of these states: see `requirements_at_fault`.
     """
 
     event: sct.Event
@@ -147,7 +147,7 @@ class Hindrance:
 
     `forbidden` is None if the source state is never reached. `plants` are those that are never ready for the transition
     in the source state, possibly its own plant; none if each is ready but never all at once. `requirements` forbid it
-    there: see `forbidding`. `counterexample` is given if synthesis forbids it.
+    there: see `requirements_at_fault`. `counterexample` is given if synthesis forbids it.
     """
 
     edge: sct.Edge
@@ -227,10 +227,10 @@ class Observer:
 
         Yields nothing if the count exceeds its effort limit.
         """
-        stated = self._system.stated()
-        if len(stated) * self._system.found.rounds[0].node_count() > _WEIGHING:
+        groups = self._system.group_requirements()
+        if len(groups) * self._system.solution.rounds[0].node_count() > _WEIGHING:
             return
-        for requirements in stated:
+        for requirements in groups:
             states = self._system.diagrams.any_of(map(self._matters, requirements))
             # Skip range requirements that matter in no state: they follow from types, and no author wrote them.
             stands = not all(isinstance(own, sct.Requirement) and own.ranges for own in requirements)
@@ -239,10 +239,10 @@ class Observer:
 
     def _matters(self, requirement: sct.StatedRequirement) -> Diagram:
         if requirement in self._system.violations:
-            return self._system.found.rounds[0] & self._system.violations[requirement]
+            return self._system.solution.rounds[0] & self._system.violations[requirement]
         assert isinstance(requirement, sct.Requirement)
         relation = self._system.relations[requirement.event]
-        return self._system.controlled & relation.enabled & ~relation.asked[requirement]
+        return self._system.controlled & relation.enabled & ~relation.permissions[requirement]
 
     def _never_enabled(self) -> Iterator[NeverEnabled]:
         controlled, uncontrolled = self._system.controlled, self._system.uncontrolled
@@ -261,9 +261,9 @@ class Observer:
                     else NeverEnabled(event, Forbidden.BY_PLANTS, plants=plants)
                 )
             elif forbidden:
-                requirements = forbidding(permission.relation, enabled)
-                stated = any(requirement.automaton is not None for requirement in requirements)
-                way = self._way_of_plants(enabled) if stated else None
+                requirements = requirements_at_fault(permission.relation, enabled)
+                has_automaton = any(requirement.automaton is not None for requirement in requirements)
+                way = self._way_of_plants(enabled) if has_automaton else None
                 trace = self._system.trace(way) if way is not None else None
                 yield NeverEnabled(event, Forbidden.BY_REQUIREMENTS, requirements=requirements, trace=trace)
             else:
@@ -281,26 +281,28 @@ class Observer:
         """Return why an event that the plants allow only outside of the controlled states never happens."""
         system = self._system
         way = self._way_of_plants(goal)
-        found = NeverEnabled(event, Forbidden.BY_PLANTS, plants=plants, kept_away=True)
+        observation = NeverEnabled(event, Forbidden.BY_PLANTS, plants=plants, kept_away=True)
         if way is None:
-            return found
+            return observation
         for number, (relation, _) in enumerate(way.moves):
             permission = self._permissions.get(relation.event)
             if permission is None or system.is_in(way.states[number], permission.allowed):
                 continue
             here = self._held_back(permission) & system.encoding.state(way.states[number])
             if here.satisfiable():
-                return replace(found, counterexample=self._counterexample(permission, here))
-            asked = relation.asked.items()
+                return replace(observation, counterexample=self._counterexample(permission, here))
+            permissions = relation.permissions.items()
             return replace(
-                found,
+                observation,
                 requirements=tuple(
-                    requirement for requirement, allowing in asked if not system.is_in(way.states[number], allowing)
+                    requirement
+                    for requirement, allowing in permissions
+                    if not system.is_in(way.states[number], allowing)
                 ),
                 trace=system.trace(Path(way.states[: number + 2], way.moves[: number + 1])),
                 needed=relation.event,
             )
-        return found
+        return observation
 
     def _silent_restricted(self) -> Iterator[SilentRestricted]:
         for event, permission in self._permissions.items():
@@ -315,7 +317,7 @@ class Observer:
                 continue
             after = permission.where if step is None else step.image(permission.where)
             if not (after & self._system.started_where(event)).satisfiable():
-                at_fault = forbidding(permission.relation, after)
+                at_fault = requirements_at_fault(permission.relation, after)
                 yield SelfCancelling(
                     event, tuple(requirement for requirement in at_fault if requirement.automaton is None)
                 )
@@ -326,14 +328,14 @@ class Observer:
                 continue
             relation = permission.relation
             due = self._system.controlled & relation.enabled
-            stated = [requirement for requirement in relation.asked if requirement.automaton is not None]
-            for requirement, allowing in relation.asked.items():
+            automata = [requirement for requirement in relation.permissions if requirement.automaton is not None]
+            for requirement, allowing in relation.permissions.items():
                 if requirement.automaton is None:
                     due &= allowing
-            for requirement in stated:
-                held = due & ~relation.asked[requirement]
-                if held.satisfiable():
-                    yield ForbiddenCancel(event, requirement, self._system.trace(self._system.path_to(held)))
+            for requirement in automata:
+                forbidden = due & ~relation.permissions[requirement]
+                if forbidden.satisfiable():
+                    yield ForbiddenCancel(event, requirement, self._system.trace(self._system.path_to(forbidden)))
 
     def _shared_servers(self) -> Iterator[SharedServer]:
         servers: dict[tuple[sct.PlantKind, str], list[sct.Plant]] = {}
@@ -420,14 +422,14 @@ class Observer:
         if not here.satisfiable():
             return Hindrance(edge, None)
         relation = self._system.relations[edge.event]
-        own = relation.taken([edge])
+        own = relation.states_taking([edge])
         enabled = here & relation.enabled & own
         if not (here & own).satisfiable():
             return Hindrance(edge, Forbidden.BY_PLANTS, plants=(edge.target.eContainer(),))
         if not enabled.satisfiable():
             return Hindrance(edge, Forbidden.BY_PLANTS, plants=never_ready(relation, here))
         if not (enabled & relation.requirement).satisfiable():
-            return Hindrance(edge, Forbidden.BY_REQUIREMENTS, requirements=forbidding(relation, enabled))
+            return Hindrance(edge, Forbidden.BY_REQUIREMENTS, requirements=requirements_at_fault(relation, enabled))
         return Hindrance(
             edge, Forbidden.BY_SYNTHESIS, counterexample=self._counterexample(self._permissions[edge.event], here & own)
         )
@@ -452,10 +454,10 @@ class Observer:
             goal = self._held_back(permission)
             known = self._counterexamples.get((event, goal))
             way = None if known or taken > _STEPS else self._system.layers.path_to(goal, _EFFORT)
-            found = known or (way and blocking_counterexample(self._system, event, way))
-            if found:
-                taken += len(found.trace) + len(found.onwards)
-                yield event, found
+            counterexample = known or (way and blocking_counterexample(self._system, event, way))
+            if counterexample:
+                taken += len(counterexample.trace) + len(counterexample.onwards)
+                yield event, counterexample
 
     def _counterexample(self, permission: Permission, where: Diagram | None = None) -> BlockingCounterexample:
         """Return the counterexample that holding back the event prevents in some of these states. Cached."""

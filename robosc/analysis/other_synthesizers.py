@@ -10,7 +10,7 @@ from robosc.model import sct
 from robosc.model.places import place
 from robosc.model.semantics.roles import event_name
 from robosc.model.validity import faults
-from robosc.synthesis import MEMORY, Statistics, Synthesis, encoded
+from robosc.synthesis import MEMORY, Statistics, Synthesis, use_encoding
 
 if TYPE_CHECKING:
     from robosc.base.extensions import Extension
@@ -26,7 +26,7 @@ def supervise_by(extension: Extension, model: sct.SupervisoryControlModel, *, me
     """
     module = extension.load("synthesize")
     model.supervisor = None
-    with extension.working():
+    with extension.report_exceptions():
         supervisor = module.synthesize(model)
     if supervisor is None:
         message = f"the supervisor is empty: `{extension.name}` finds no supervisor"
@@ -42,7 +42,7 @@ def supervise_by(extension: Extension, model: sct.SupervisoryControlModel, *, me
         supervisor.controlledStates = encoding.count(system.controlled)
         return Synthesis(supervisor, None, supervisor.controlledStates, 0, Statistics(), tuple(possible))
 
-    return encoded(model, look, memory)
+    return use_encoding(model, look, memory)
 
 
 def _check(extension: Extension, model: sct.SupervisoryControlModel, supervisor: object) -> None:
@@ -53,8 +53,8 @@ def _check(extension: Extension, model: sct.SupervisoryControlModel, supervisor:
     guards = {guard.event: guard for guard in supervisor.guards}
     if len(supervisor.guards) != len(controllable) or set(guards) != set(controllable):
         missing = next((event_name(event) for event in controllable if event not in guards), None)
-        told = f"it has none for `{missing}`" if missing else "it has other guards"
-        raise extension.fault(f"a supervisor has one guard for each controllable event, and {told}")
+        difference = f"it has none for `{missing}`" if missing else "it has other guards"
+        raise extension.fault(f"a supervisor has one guard for each controllable event, and {difference}")
     supervisor.guards = [guards[event] for event in controllable]
     supervisor.settlingBound = None
     supervisor.controlledStates = supervisor.bddNodes = 0

@@ -14,9 +14,9 @@ if TYPE_CHECKING:
 
     from robosc.synthesis.bdd import Diagram
     from robosc.synthesis.encoding import Element, Encoding
-    from robosc.synthesis.relation import EventRelation, Step
+    from robosc.synthesis.relation import EventRelation, SymbolicStep
 
-    Move = tuple[EventRelation, Step]
+    Move = tuple[EventRelation, SymbolicStep]
 
 
 @dataclass(frozen=True)
@@ -116,13 +116,13 @@ def deciding(moves: Sequence[Move], elements: Iterable[Element]) -> list[Move]:
     for number, (relation, _) in enumerate(moves):
         for element in relation.changed:
             changing.setdefault(element, []).append(number)
-    found: set[int] = set()
+    influencing: set[int] = set()
     pending = list(elements)
     while pending:
-        added = set(changing.pop(pending.pop(), ())) - found
-        found |= added
+        added = set(changing.pop(pending.pop(), ())) - influencing
+        influencing |= added
         pending += (element for number in added for element in moves[number][0].concerned)
-    return [moves[number] for number in sorted(found)]
+    return [moves[number] for number in sorted(influencing)]
 
 
 def trace(encoding: Encoding, path: Path) -> list[TraceStep]:

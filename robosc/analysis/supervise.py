@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from robosc.analysis.blocking import Reason, reason_of_emptiness
-from robosc.analysis.blocking_in_words import blocking, counterexample_in_words
+from robosc.analysis.blocking import BlockReason, reason_of_emptiness
+from robosc.analysis.blocking_in_words import counterexample_in_words, describe_blocking
 from robosc.analysis.findings import findings_of
 from robosc.analysis.observations import Observations, Observer, Weight
 from robosc.analysis.system import SynthesizedSystem
@@ -31,7 +31,7 @@ class Diagnosis(Synthesis):
     """
 
     observations: Observations | None = None
-    reason: Reason | None = None
+    reason: BlockReason | None = None
     weights: tuple[Weight, ...] = ()
 
 
@@ -52,7 +52,7 @@ class EmptySupervisorError(ModelError):
         reason = synthesis.reason
         trace = f"; a shortest trace: {in_words(reason.trace, model)}" if reason.trace else ""
         file, span = _place(model, reason)
-        message = f"the supervisor is empty: {blocking(reason)}{trace}"
+        message = f"the supervisor is empty: {describe_blocking(reason)}{trace}"
         if reason.requirements and not (reason.event and reason.event.controllable):
             message += f"; from there on {forbid(reason.requirements, 'something')}"
         way = _condition(model, reason) or "loosen a requirement, or give every component a way back to a marked state"
@@ -60,15 +60,15 @@ class EmptySupervisorError(ModelError):
         super().__init__([Diagnostic(file, span, Severity.ERROR, "empty-supervisor", message, hint)])
 
 
-def _place(model: sct.SupervisoryControlModel, reason: Reason) -> tuple[str, Span]:
+def _place(model: sct.SupervisoryControlModel, reason: BlockReason) -> tuple[str, Span]:
     """Return the place of the event at fault, or of the first requirement at fault if the event is a library's."""
     own, _ = place(model)
     elements = [element for element in (reason.event, *reason.violated, *reason.requirements) if element is not None]
     places = [place(element) for element in elements] or [place(model)]
-    return next((found for found in places if found[0] == own), places[0])
+    return next((candidate for candidate in places if candidate[0] == own), places[0])
 
 
-def _condition(model: sct.SupervisoryControlModel, reason: Reason) -> str | None:
+def _condition(model: sct.SupervisoryControlModel, reason: BlockReason) -> str | None:
     """Return the condition that an automaton lacks if it follows a message that its component ignores."""
     events = [requirement.event for requirement in reason.violated if isinstance(requirement, sct.Requirement)]
     for event in events:
@@ -107,16 +107,16 @@ def diagnose(
     """
 
     def look(solution: Solution) -> Diagnosis:
-        found = vars(solution.synthesis)
+        attributes = vars(solution.synthesis)
         with solution.synthesis.statistics.during(Phase.OBSERVE if solution.synthesis.supervisor else Phase.GUARDS):
             system = SynthesizedSystem(model, solution.encoding, solution.relations, solution.states)
             if solution.uncontrolled is not None:
                 system.uncontrolled = solution.uncontrolled
             if solution.synthesis.supervisor is None:
-                return Diagnosis(**found, reason=reason_of_emptiness(system))
+                return Diagnosis(**attributes, reason=reason_of_emptiness(system))
             observer = Observer(system, solution.permissions)
             weights = tuple(observer.weights()) if weigh else ()
-            return Diagnosis(**found, observations=observer.observations(), weights=weights)
+            return Diagnosis(**attributes, observations=observer.observations(), weights=weights)
 
     return solve(model, look, memory=memory, statistics=statistics, effort=effort)
 
@@ -139,12 +139,12 @@ def supervise(
     synthesis = diagnose(model, memory=memory, statistics=statistics, weigh=weigh, effort=effort)
     if synthesis.observations is None:
         raise EmptySupervisorError(model, synthesis)
-    found = findings_of(model, synthesis.observations)
+    findings = findings_of(model, synthesis.observations)
     assert synthesis.supervisor is not None
     for guard in synthesis.supervisor.guards:
         counterexample = synthesis.observations.counterexamples.get(guard.event)
         if counterexample is not None:
             guard.explanation = counterexample_in_words(counterexample, model)
-    if not has_errors(found) and not synthesis.unwritten:
+    if not has_errors(findings) and not synthesis.unwritten:
         model.supervisor = synthesis.supervisor
-    return Supervision(synthesis, found)
+    return Supervision(synthesis, findings)

@@ -89,7 +89,7 @@ class SupervisedSystem:
     @cached_property
     def size(self) -> str:
         """Number of controlled states, in words."""
-        return counted(self.encoding.count(self.controlled), "state")
+        return format_count(self.encoding.count(self.controlled), "state")
 
     @cached_property
     def layers(self) -> Layers:
@@ -155,7 +155,7 @@ class SupervisedSystem:
 class SynthesizedSystem(SupervisedSystem):
     """System as computed by synthesis; its moves are all events under the requirements.
 
-    `found` is the result of the fixpoint: the good states of each round, and those of them that reach a marked state.
+    `solution` is the result of the fixpoint: the good states of each round, and those that reach a marked state.
     """
 
     def __init__(
@@ -163,16 +163,16 @@ class SynthesizedSystem(SupervisedSystem):
         model: sct.SupervisoryControlModel,
         encoding: Encoding,
         relations: Sequence[EventRelation] | None = None,
-        found: SupervisedStates | None = None,
+        solution: SupervisedStates | None = None,
     ) -> None:
-        """Compute `relations` and `found` unless they are given."""
+        """Compute `relations` and `solution` unless they are given."""
         relations = event_relations(model, encoding) if relations is None else relations
         super().__init__(
             model, encoding, {relation.event: relation for relation in relations}, required_moves(relations)
         )
         self.required = {relation.event: relation.requirement for relation in relations}
-        self.found = supervise(encoding, self.moves, self.violating) if found is None else found
-        self.controlled = self.found.controlled
+        self.solution = supervise(encoding, self.moves, self.violating) if solution is None else solution
+        self.controlled = self.solution.controlled
 
     def without(self, requirements: AbstractSet[sct.StatedRequirement]) -> SynthesizedSystem:
         """Return the system without some requirements.
@@ -185,7 +185,7 @@ class SynthesizedSystem(SupervisedSystem):
         for event, relation in self.relations.items():
             trigger = self.start_of(event)
             if trigger is None:
-                other.required[event] = self._asked(relation, requirements)
+                other.required[event] = self._permitted(relation, requirements)
             else:
                 other.required[event] = ~self.started_where(trigger, requirements)
         moves = ((relation, relation.step_where(other.required[event])) for event, relation in self.relations.items())
@@ -194,8 +194,8 @@ class SynthesizedSystem(SupervisedSystem):
         other.violations = {
             requirement: states for requirement, states in self.violations.items() if requirement not in requirements
         }
-        other.found = supervise(self.encoding, other.moves, other.violating)
-        other.controlled = other.found.controlled
+        other.solution = supervise(self.encoding, other.moves, other.violating)
+        other.controlled = other.solution.controlled
         return other
 
     def allowed(self, event: sct.Event) -> Diagram:
@@ -204,13 +204,15 @@ class SynthesizedSystem(SupervisedSystem):
         step = next((step for relation, step in self.moves if relation.event is event), None)
         return enabled & step.preimage(self.controlled) if event.controllable and step is not None else enabled
 
-    def stated(self, first: Iterable[sct.StatedRequirement] = ()) -> list[tuple[sct.StatedRequirement, ...]]:
+    def group_requirements(
+        self, first: Iterable[sct.StatedRequirement] = ()
+    ) -> list[tuple[sct.StatedRequirement, ...]]:
         """Return the requirements grouped by their place in the text, those of `first` before the others.
 
         Requirements that define when an action is canceled are left out.
         """
-        asked = (requirement for requirement in self.model.requirements if self.start_of(requirement.event) is None)
-        own: list[sct.StatedRequirement] = [*asked, *self.model.invariants]
+        enforced = (requirement for requirement in self.model.requirements if self.start_of(requirement.event) is None)
+        own: list[sct.StatedRequirement] = [*enforced, *self.model.invariants]
         by_place: dict[object, list[sct.StatedRequirement]] = {}
         for requirement in dict.fromkeys([*(requirement for requirement in first if requirement in own), *own]):
             by_place.setdefault(requirement.source or requirement, []).append(requirement)
@@ -234,15 +236,17 @@ class SynthesizedSystem(SupervisedSystem):
 
         Orders and counts are ignored: they restrict only another start.
         """
-        asked = self.relations[trigger].asked.items()
+        permissions = self.relations[trigger].permissions.items()
         return self.diagrams.all_of(
-            holds for requirement, holds in asked if requirement.automaton is None and requirement not in left_out
+            holds for requirement, holds in permissions if requirement.automaton is None and requirement not in left_out
         )
 
-    def _asked(self, relation: EventRelation, left_out: AbstractSet[sct.StatedRequirement]) -> Diagram:
+    def _permitted(self, relation: EventRelation, left_out: AbstractSet[sct.StatedRequirement]) -> Diagram:
         """Return the states in which the requirements on an event hold, except those left out."""
-        kept = [asked for requirement, asked in relation.asked.items() if requirement not in left_out]
-        return self.diagrams.all_of(kept)
+        remaining = [
+            permission for requirement, permission in relation.permissions.items() if requirement not in left_out
+        ]
+        return self.diagrams.all_of(remaining)
 
 
 class GuardedSystem(SupervisedSystem):
@@ -297,7 +301,7 @@ class GuardedSystem(SupervisedSystem):
 
 
 class ExplainedSystem(SynthesizedSystem):
-    """System under the supervisor of its model; `moves` and `found` are those of synthesis nevertheless.
+    """System under the supervisor of its model; `moves` and `solution` are those of synthesis nevertheless.
 
     Raises ValueError if the model has no supervisor.
     """
@@ -315,7 +319,7 @@ class ExplainedSystem(SynthesizedSystem):
 
     def without(self, requirements: AbstractSet[sct.StatedRequirement]) -> SynthesizedSystem:
         """Return the system that synthesis would compute without some requirements."""
-        own = SynthesizedSystem(self.model, self.encoding, list(self.relations.values()), self.found)
+        own = SynthesizedSystem(self.model, self.encoding, list(self.relations.values()), self.solution)
         return own.without(requirements)
 
 
@@ -324,11 +328,11 @@ def whole_state(model: sct.SupervisoryControlModel, codes: Codes) -> dict[str, V
     return named_state(model, lambda element: value(element, codes[element]))
 
 
-def counted(number: int, what: str) -> str:
+def format_count(number: int, what: str) -> str:
     """Return a number of things as text: `1 state`, `1,234 states`, `1.27e+30 states`."""
-    return f"{grouped(number)} {what}" if number == 1 else f"{grouped(number)} {what}s"
+    return f"{format_number(number)} {what}" if number == 1 else f"{format_number(number)} {what}s"
 
 
-def grouped(number: int) -> str:
+def format_number(number: int) -> str:
     """Return a number as text for users: `1,234`, `1.27e+30`."""
     return f"{number:,}" if number < 10**_DIGITS else f"{Decimal(number):.2e}"

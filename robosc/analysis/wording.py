@@ -48,19 +48,19 @@ def words(event: sct.Event) -> str:
     owner = f"`{name(plant_of(event))}`"
     if event.kind == sct.EventKind.data:
         number = provide_number(event)
-        said = f"choice of `provide` {number} for {owner}" if number else f"choice of no data for {owner}"
+        phrase = f"choice of `provide` {number} for {owner}" if number else f"choice of no data for {owner}"
         where = _where(event) if number else ""
     elif event.kind in (sct.EventKind.plain, sct.EventKind.input):
-        said = f"{'change of ' * (event.kind == sct.EventKind.input)}`{event_name(event)}`"
+        phrase = f"{'change of ' * (event.kind == sct.EventKind.input)}`{event_name(event)}`"
         where = ""
     else:
-        said = _EVENTS[event.kind].format(owner)
-        said += f" after {timer_text(event.timer)}" if event.timer else ""
+        phrase = _EVENTS[event.kind].format(owner)
+        phrase += f" after {timer_text(event.timer)}" if event.timer else ""
         where = _where(event) if event.kind in _OWN else ""
-    return f"{said} in {where}" if where else said
+    return f"{phrase} in {where}" if where else phrase
 
 
-def with_words(event: sct.Event) -> str:
+def describe_event(event: sct.Event) -> str:
     """Return the event's name, with its description if the name does not identify its text."""
     unclear = event.kind in (*_OWN, sct.EventKind.data) and event.source
     return f"{event_name(event)} ({words(event)})" if unclear else event_name(event)
@@ -91,13 +91,13 @@ def change(event: sct.Event) -> str:
     return f"{name(plant)} changes by itself: {', '.join(own)}" + (f" ({where})" if where else "")
 
 
-def called(requirements: Sequence[sct.StatedRequirement]) -> str:
+def quote_requirements(requirements: Sequence[sct.StatedRequirement]) -> str:
     """Return requirements with their text and line: "`requirement move needs Lidar.free` (line 12)"."""
-    told = list(dict.fromkeys(map(_called, requirements)))
-    named = told[:NAMED]
-    if len(told) > NAMED:
-        named.append(f"{len(told) - NAMED} more")
-    return listed(named)
+    texts = list(dict.fromkeys(map(_called, requirements)))
+    named = texts[:NAMED]
+    if len(texts) > NAMED:
+        named.append(f"{len(texts) - NAMED} more")
+    return join_with_and(named)
 
 
 def _called(requirement: sct.StatedRequirement) -> str:
@@ -110,7 +110,7 @@ def _called(requirement: sct.StatedRequirement) -> str:
 
 def forbid(requirements: Sequence[sct.Requirement], what: str) -> str:
     """Return a clause which states that requirements forbid something."""
-    return f"{called(requirements)} {_forbid(requirements)} {what}"
+    return f"{quote_requirements(requirements)} {_forbid(requirements)} {what}"
 
 
 def violates(named: str, requirements: Sequence[sct.StatedRequirement]) -> str:
@@ -119,7 +119,7 @@ def violates(named: str, requirements: Sequence[sct.StatedRequirement]) -> str:
         requirement.event for requirement in requirements if isinstance(requirement, sct.Requirement)
     )
     if events:
-        return f"{listed([words(event) for event in events])} can come, which {named} {_forbid(requirements)}"
+        return f"{join_with_and([words(event) for event in events])} can come, which {named} {_forbid(requirements)}"
     return f"{named} {'is' if len(requirements) == 1 else 'are'} violated"
 
 
@@ -130,12 +130,12 @@ def _forbid(requirements: Sequence[sct.StatedRequirement]) -> str:
 def in_words(steps: Sequence[TraceStep], model: sct.SupervisoryControlModel) -> str:
     """Return the events of a trace with the data that matters; repetitions in a row appear once."""
     events = {event_name(event): event for plant in model.plants for event in plant.events}
-    said = []
+    phrases = []
     for step in steps:
         event = events[step.event]
         data = ", ".join(_data(parameter, chosen, event) for parameter, chosen in step.inputs.items())
-        said.append(f"{words(event)} ({data})" if data else words(event))
-    runs = [(phrase, len(list(run))) for phrase, run in groupby(said)]
+        phrases.append(f"{words(event)} ({data})" if data else words(event))
+    runs = [(phrase, len(list(run))) for phrase, run in groupby(phrases)]
     return ", then ".join(phrase if times == 1 else f"{times:,} times {phrase}" for phrase, times in runs)
 
 
@@ -143,12 +143,12 @@ def _data(input_name: str, chosen: Value, event: sct.Event) -> str:
     """Return a piece of an event's data, or the node's computation on it, as the model writes it."""
     computed = next((carried.text for carried in event.inputs if carried.name == input_name), None)
     if computed is None:
-        said = input_name.removeprefix(f"i_{event.kind.name}").removeprefix("_") or "value"
-        return f"{said} = {text(chosen)}"
+        name = input_name.removeprefix(f"i_{event.kind.name}").removeprefix("_") or "value"
+        return f"{name} = {text(chosen)}"
     return computed if chosen is True else f"!({computed})" if chosen is False else f"{computed} = {text(chosen)}"
 
 
-def listed(names: Sequence[str]) -> str:
+def join_with_and(names: Sequence[str]) -> str:
     """Return `a`, `a and b`, or `a, b and c`."""
     return ", ".join(names[:-1]) + f" and {names[-1]}" if len(names) > 1 else "".join(names)
 

@@ -49,7 +49,7 @@ class Extension:
 
         Raises ModelError if it is unusable.
         """
-        with self.working():
+        with self.report_exceptions():
             loaded = self.entry.load()
         for function in functions:
             if not callable(getattr(loaded, function, None)):
@@ -57,7 +57,7 @@ class Extension:
         return loaded
 
     @contextmanager
-    def working(self) -> Iterator[None]:
+    def report_exceptions(self) -> Iterator[None]:
         """Run code of the package in the `with` block; its exceptions become faults of the extension (ModelError).
 
         Its prints go to the standard error, because the standard output is the tool's own.
@@ -91,8 +91,8 @@ class Extension:
 @cache
 def extensions(group: Group) -> Mapping[str, Extension]:
     """Return the installed extensions of a group by name; of equal names, the first by package counts."""
-    found: dict[str, Extension] = {}
+    by_name: dict[str, Extension] = {}
     entries = [(entry.name, entry.dist.name if entry.dist else "", entry) for entry in entry_points(group=group)]
     for name, _, entry in sorted(entries, key=lambda triple: triple[:2]):
-        found.setdefault(name, Extension(entry))
-    return found
+        by_name.setdefault(name, Extension(entry))
+    return by_name

@@ -17,7 +17,7 @@ _CHECK: ContextVar[Callable[[], None] | None] = ContextVar("robosc_interruption"
 
 
 @contextmanager
-def checking(check: Callable[[], None]) -> Iterator[None]:
+def call_at_checkpoints(check: Callable[[], None]) -> Iterator[None]:
     """Call `check` at every checkpoint of this thread within the `with` block."""
     token = _CHECK.set(check)
     try:
@@ -27,7 +27,7 @@ def checking(check: Callable[[], None]) -> Iterator[None]:
 
 
 def current_check() -> Callable[[], None] | None:
-    """Return the check of the innermost `checking` block of this thread, or None."""
+    """Return the check of the innermost `call_at_checkpoints` block of this thread, or None."""
     return _CHECK.get()
 
 

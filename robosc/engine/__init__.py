@@ -3,6 +3,6 @@
 from robosc.engine.control_loop import ControlLoop, Hooks, Settings
 from robosc.engine.interpreter import Blocked, Engine
 from robosc.engine.state import State, Value
-from robosc.m2m.remembering import once, remembered
+from robosc.m2m.memo import cache_transformations, once
 
-__all__ = ["Blocked", "ControlLoop", "Engine", "Hooks", "Settings", "State", "Value", "once", "remembered"]
+__all__ = ["Blocked", "ControlLoop", "Engine", "Hooks", "Settings", "State", "Value", "cache_transformations", "once"]

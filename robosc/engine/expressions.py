@@ -25,7 +25,7 @@ _SPELLINGS = {
     ex.Subtraction: "-",
     ex.Multiplication: "*",
 }
-_CALLED = {found.__name__: facts.compute for found, facts in BY_CLASS.items() if issubclass(found, ex.BinaryExpression)}
+_CALLED = {kind.__name__: facts.compute for kind, facts in BY_CLASS.items() if issubclass(kind, ex.BinaryExpression)}
 #: Maximum nesting depth of the Python text. Deeper parts are assigned to variables: Python's parser needs stack.
 _DEEPEST = 20
 
@@ -47,7 +47,7 @@ class Compiler:
         """Return the function of an expression; of several, the function of their conjunction."""
         beforehand: list[str] = []
 
-        def made(node: ex.Expression, parts: list[tuple[str, int]]) -> tuple[str, int]:
+        def combine(node: ex.Expression, parts: list[tuple[str, int]]) -> tuple[str, int]:
             text = self._text(node, [part for part, _ in parts])
             depth = 1 + max((inner for _, inner in parts), default=0)
             if depth <= _DEEPEST:
@@ -55,7 +55,7 @@ class Compiler:
             beforehand.append(f"value_{len(beforehand)} = {text}")
             return beforehand[-1].partition(" ")[0], 1
 
-        texts = [fold(made, expression, _inside)[0] for expression in expressions]
+        texts = [fold(combine, expression, _inside)[0] for expression in expressions]
         body = "\n    ".join([*beforehand, f"return {_joined(texts, 'and')}"])
         made_here: dict[str, Function] = {}
         # The text contains nothing from users: `_text` writes only positions, numbers, operators and names of

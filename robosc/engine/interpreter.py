@@ -7,7 +7,7 @@ from enum import StrEnum
 from typing import TYPE_CHECKING
 
 from robosc.engine.expressions import Compiler, Function, all_inside
-from robosc.engine.state import Domain, Layout, State, Value
+from robosc.engine.state import Domain, State, StateLayout, Value
 from robosc.m2m.sct_to_engine import transform
 from robosc.model import engine, sct
 from robosc.model import expression as ex
@@ -43,7 +43,7 @@ class Engine:
         self.executed = transform(model)
         self.roles = Roles(model)
         self.events: tuple[str, ...] = tuple(event_name(event) for event in self.roles.events)
-        self._layout = Layout(self.executed)
+        self._layout = StateLayout(self.executed)
         self._input_domains = [Domain(declared.type) for declared in self.executed.inputs]
         self._inputs = [declared.initial for declared in self.executed.inputs]
         self._compile = Compiler(self.executed)
@@ -104,13 +104,13 @@ class Engine:
 
     def reads(self, event: str) -> frozenset[sct.Plant | sct.DiscreteVariable]:
         """Return the parts of the state that determine whether the event is enabled, and the reasons that block it."""
-        asked = self._by_name[event]
-        conditions = [term.condition for term in asked.guard.terms]
-        parts = [asked.guard.plants, asked.guard.requirement, asked.guard.synthesis]
-        parts += [reason.condition for reason in asked.reasons]
+        executed = self._by_name[event]
+        conditions = [term.condition for term in executed.guard.terms]
+        parts = [executed.guard.plants, executed.guard.requirement, executed.guard.synthesis]
+        parts += [reason.condition for reason in executed.reasons]
         conditions += [part for part in parts if part is not None]
-        read = {part.variable for part in all_inside(conditions) if isinstance(part, engine.VariableReference)}
-        return frozenset(variable.variable or variable.plant for variable in read)
+        variables = {part.variable for part in all_inside(conditions) if isinstance(part, engine.VariableReference)}
+        return frozenset(variable.variable or variable.plant for variable in variables)
 
     def blocked_by(self, event: str) -> Blocked | None:
         """Return the cause that blocks the event in this state. None if it is enabled."""
@@ -122,7 +122,7 @@ class Engine:
             self._reasons[event] = [(reason, self._compile(part)) for reason, part in conditions if part is not None]
         return next(reason for reason, holds in self._reasons[event] if not holds(self._cells, ()))
 
-    def failing(self, event: str) -> list[sct.Requirement]:
+    def failing_requirements(self, event: str) -> list[sct.Requirement]:
         """Return the requirements on the event that forbid it in this state, independent of other causes."""
         if event not in self._failing:
             self._failing[event] = [
@@ -166,7 +166,7 @@ class Engine:
     def value(self, variable: sct.DiscreteVariable) -> Value:
         """Return the value of a variable in its external form."""
         cell = self._layout.cells[variable]
-        return self._layout.domains[cell].shown(self._cells[cell])
+        return self._layout.domains[cell].external(self._cells[cell])
 
     def cell(self, variable: engine.StateVariable) -> int:
         """Return the value of a state variable. The value of a location is its position."""
@@ -213,8 +213,8 @@ class Engine:
                 return plant.locations[self.location(plant)] is location
             case sct.VariableReference(variable=variable):
                 return _object(variable.type, self._cells[self._layout.cells[variable]])
-            case sct.InputReference(input=given):
-                return _object(given.type, self._inputs[self._positions[given]])
+            case sct.InputReference(input=input_element):
+                return _object(input_element.type, self._inputs[self._positions[input_element]])
         assert isinstance(reference, ex.EnumerationLiteralReference)
         return reference.literal
 

@@ -34,7 +34,7 @@ class Domain:
                 self._names = [literal.name for literal in enumeration.literals]
         self._boolean = isinstance(kind, ex.BooleanType)
 
-    def shown(self, value: int) -> Value:
+    def external(self, value: int) -> Value:
         """Return the external form of a value."""
         if self._names is not None:
             return self._names[value]
@@ -55,7 +55,7 @@ class Domain:
         return min(max(value, self.low), self.high)
 
 
-class Layout:
+class StateLayout:
     """Assignment of the cells of a state. Names are as in `~/state`: `component_Gauge`, `Gauge.level`."""
 
     def __init__(self, model: engine.EngineModel) -> None:
@@ -73,13 +73,13 @@ class State(Mapping[str, Value]):
 
     __slots__ = ("cells", "layout")
 
-    def __init__(self, layout: Layout, cells: tuple[int, ...]) -> None:
+    def __init__(self, layout: StateLayout, cells: tuple[int, ...]) -> None:
         self.layout = layout
         self.cells = cells
 
     def __getitem__(self, name: str) -> Value:
         position = self.layout.position[name]
-        return self.layout.domains[position].shown(self.cells[position])
+        return self.layout.domains[position].external(self.cells[position])
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.layout.position)

@@ -30,7 +30,7 @@ class Transitions:
             for event, taking_part in edges_by_event(engine.model.plants).items()
         }
 
-    def tried(self, event: str) -> Iterator[tuple[sct.Edge, bool]]:
+    def attempts(self, event: str) -> Iterator[tuple[sct.Edge, bool]]:
         """Iterate over the transitions that an enabled event tries in the current state, and whether each is taken."""
         for plant, edges in self._edges.get(event, ()):
             here = plant.locations[self._engine.location(plant)]
@@ -43,6 +43,6 @@ class Transitions:
                 if taken:
                     break
 
-    def taken(self, event: str) -> tuple[sct.Edge, ...]:
+    def taken_transitions(self, event: str) -> tuple[sct.Edge, ...]:
         """Return the transitions that an enabled event takes in the current state, with the current inputs."""
-        return tuple(edge for edge, taken in self.tried(event) if taken)
+        return tuple(edge for edge, taken in self.attempts(event) if taken)

@@ -70,13 +70,13 @@ def _is_argument(
 
 
 def _is_declared(declared: rsc.DataType | None) -> bool:
-    found = declared_type(declared)
-    return isinstance(found, EnumType) and is_failure(found.definition)
+    kind = declared_type(declared)
+    return isinstance(kind, EnumType) and is_failure(kind.definition)
 
 
 def _is_reason(expression: ex.Expression | None) -> bool:
     # Only these expressions can have an enum type. Operators are skipped: long chains of them would be slow to type.
     if not isinstance(expression, rsc.Access | rsc.ErrorReason | rsc.Call | ex.Conditional):
         return False
-    found = type_of(expression)
-    return isinstance(found, EnumType) and is_failure(found.definition)
+    kind = type_of(expression)
+    return isinstance(kind, EnumType) and is_failure(kind.definition)

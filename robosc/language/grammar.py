@@ -54,7 +54,7 @@ def parse(text: str, rule: str) -> Node | Failure:
         failed = fault.__cause__
         assert isinstance(failed, arpeggio.NoMatch)
         return Failure(
-            failed.position, tuple(dict.fromkeys(word for word in map(_wanted, failed.rules) if word != "Comment"))
+            failed.position, tuple(dict.fromkeys(word for word in map(_expectation, failed.rules) if word != "Comment"))
         )
 
 
@@ -95,7 +95,7 @@ def following() -> Mapping[str, frozenset[str]]:
 
     The next item of a list does not count.
     """
-    facts, found = _facts(), dict[str, set[str]]()
+    facts, followers = _facts(), dict[str, set[str]]()
     for node in _nodes().values():
         in_order = isinstance(node, arpeggio.Sequence) and not isinstance(node, arpeggio.OrderedChoice)
         if not in_order and not isinstance(node, arpeggio.UnorderedGroup):
@@ -103,16 +103,16 @@ def following() -> Mapping[str, frozenset[str]]:
         for index, part in enumerate(node.nodes):
             for other in node.nodes[index + 1 :] if in_order else node.nodes:
                 for word in facts[id(part)].last if other is not part else ():
-                    found.setdefault(word, set()).update(facts[id(other)].first)
+                    followers.setdefault(word, set()).update(facts[id(other)].first)
                 if in_order and not facts[id(other)].nullable:
                     break
-    return {word: frozenset(others) for word, others in found.items()}
+    return {word: frozenset(others) for word, others in followers.items()}
 
 
 @cache
 def words_of(rule: str) -> frozenset[str]:
     """Return all words, symbols and word rules that can occur in a text of a rule."""
-    return frozenset(_wanted(node) for node in _nodes(rule).values() if isinstance(node, arpeggio.Match))
+    return frozenset(_expectation(node) for node in _nodes(rule).values() if isinstance(node, arpeggio.Match))
 
 
 @dataclass
@@ -131,14 +131,14 @@ def _peg(rule: str) -> Any:
 @cache
 def _nodes(rule: str = "Base") -> Mapping[int, Any]:
     """Return the parser nodes of a rule of the grammar by their identity."""
-    found: dict[int, Any] = {}
+    nodes_by_identity: dict[int, Any] = {}
     pending = [_peg(rule)]
     while pending:
         node = pending.pop()
-        if id(node) not in found:
-            found[id(node)] = node
+        if id(node) not in nodes_by_identity:
+            nodes_by_identity[id(node)] = node
             pending += node.nodes
-    return found
+    return nodes_by_identity
 
 
 @cache
@@ -158,7 +158,7 @@ def _facts() -> Mapping[int, _Facts]:
 
 def _fact(node: Any, facts: Mapping[int, _Facts]) -> _Facts:
     if isinstance(node, arpeggio.Match):
-        return _Facts(False, {_wanted(node)}, {_wanted(node)})
+        return _Facts(False, {_expectation(node)}, {_expectation(node)})
     if isinstance(node, arpeggio.SyntaxPredicate):
         return _Facts(True)
     parts = [facts[id(part)] for part in node.nodes]
@@ -169,16 +169,16 @@ def _fact(node: Any, facts: Mapping[int, _Facts]) -> _Facts:
         return _Facts(
             nullable, set().union(*(part.first for part in parts)), set().union(*(part.last for part in parts))
         )
-    found = _Facts(nullable or isinstance(node, arpeggio.Optional | arpeggio.ZeroOrMore))
+    result = _Facts(nullable or isinstance(node, arpeggio.Optional | arpeggio.ZeroOrMore))
     for part in parts:
-        found.first |= part.first
+        result.first |= part.first
         if not part.nullable:
             break
     for part in reversed(parts):
-        found.last |= part.last
+        result.last |= part.last
         if not part.nullable:
             break
-    return found
+    return result
 
 
 def pattern(rule: str) -> str:
@@ -196,7 +196,7 @@ def attribute(node: Node) -> str | None:
     return node.rule._attr_name if node.rule_name.startswith("__asgn") else None  # noqa: SLF001
 
 
-def _wanted(rule: Any) -> str:
+def _expectation(rule: Any) -> str:
     if isinstance(rule, arpeggio.EndOfFile):
         return "end"
     word = str(getattr(rule, "to_match", rule.rule_name))

@@ -64,16 +64,16 @@ def ros_property(definition: rsc.ObjectDataType, name: str, interfaces: RosTypes
             return known
     for distribution, fields in _definitions(definition.eContainer(), interfaces):
         if name in fields:
-            found = _data_type(fields[name], distribution)
-            if found is not None:
-                made = rsc.ObjectProperty(name=name, type=found)
-                for _, part in tree(made):
+            kind = _data_type(fields[name], distribution)
+            if kind is not None:
+                prop = rsc.ObjectProperty(name=name, type=kind)
+                for _, part in tree(prop):
                     part.source = definition.source
-                definition.properties.append(made)
-                for _, part in tree(found):
+                definition.properties.append(prop)
+                for _, part in tree(kind):
                     if isinstance(part, rsc.InterfaceTypeReference):
                         declare(part, interfaces)
-                return made
+                return prop
     return None
 
 
@@ -116,7 +116,7 @@ def _basic(name: str) -> rsc.DataType | None:
     primitive = PRIMITIVES.get(name)
     if primitive is None:
         return None
-    made: rsc.DataType = _TYPES[primitive.name]()
-    if isinstance(made, rsc.IntegerDataType) and primitive.range is not None and name in _NARROW:
-        made.minimum, made.maximum = primitive.range
-    return made
+    kind: rsc.DataType = _TYPES[primitive.name]()
+    if isinstance(kind, rsc.IntegerDataType) and primitive.range is not None and name in _NARROW:
+        kind.minimum, kind.maximum = primitive.range
+    return kind

@@ -19,18 +19,18 @@ _BLANK = rb"(?:\s|//[^\n]*|/\*[\s\S]*?\*/)"
 _HEADER = re.compile(rb"(?:\xef\xbb\xbf)?" + _BLANK + rb"*+library\b" + _BLANK + rb"*+\^?([A-Za-z_]\w*)")
 
 
-def search_folders(given: Iterable[Path | str]) -> list[Path]:
+def search_folders(folders: Iterable[Path | str]) -> list[Path]:
     """Return the folders of a call, those of ROBOSC_PATH, and the folder that ships with the tool."""
     environment = [folder for folder in os.environ.get("ROBOSC_PATH", "").split(os.pathsep) if folder]
-    return [*map(Path, given), *map(Path, environment), locate("stdlib")]
+    return [*map(Path, folders), *map(Path, environment), locate("stdlib")]
 
 
 class LibraryPath:
     """Folders searched for libraries, each listed once."""
 
-    def __init__(self, given: Iterable[Path | str], documents: Documents) -> None:
-        """Search the `given` folders first, then those of ROBOSC_PATH and the folder that ships with the tool."""
-        self._folders = search_folders(given)
+    def __init__(self, folders: Iterable[Path | str], documents: Documents) -> None:
+        """Search `folders` first, then those of ROBOSC_PATH and the folder that ships with the tool."""
+        self._folders = search_folders(folders)
         self._documents = documents
         self._declared: dict[Path, Mapping[str, list[Path]]] = {}
 
@@ -41,23 +41,23 @@ class LibraryPath:
         are skipped.
         """
         for folder in (beside.parent, *self._folders):
-            found = self.declared(folder).get(name)
-            if found:
-                return found
+            files = self.declared_libraries(folder).get(name)
+            if files:
+                return files
         return []
 
-    def known(self, beside: Path) -> list[str]:
+    def library_names(self, beside: Path) -> list[str]:
         """Return the names of all libraries that a file could import from."""
-        return [name for folder in (beside.parent, *self._folders) for name in self.declared(folder)]
+        return [name for folder in (beside.parent, *self._folders) for name in self.declared_libraries(folder)]
 
     def components(self, beside: Path) -> Mapping[str, str]:
         """Return the components of all libraries that a file could import from, each with its first library."""
-        found: dict[str, str] = {}
+        by_name: dict[str, str] = {}
         for folder in (beside.parent, *self._folders):
-            for library, paths in self.declared(folder).items():
+            for library, paths in self.declared_libraries(folder).items():
                 for name in self._component_names(paths[0]):
-                    found.setdefault(name, library)
-        return found
+                    by_name.setdefault(name, library)
+        return by_name
 
     def _component_names(self, path: Path) -> list[str]:
         try:
@@ -66,7 +66,7 @@ class LibraryPath:
             return []
         return [tokens[at + 1].text for at, token in enumerate(tokens) if token.is_keyword("component")]
 
-    def declared(self, folder: Path) -> Mapping[str, list[Path]]:
+    def declared_libraries(self, folder: Path) -> Mapping[str, list[Path]]:
         """Return the paths of a folder's libraries by name; each path starts with the folder's path."""
         if folder not in self._declared:
             libraries: dict[str, list[Path]] = {}
@@ -86,5 +86,5 @@ class LibraryPath:
 
 def declared_name(content: bytes) -> str | None:
     """Return the name of the library that a UTF-8 text declares, or None if it declares none."""
-    found = _HEADER.match(content)
-    return found[1].decode("ascii") if found else None
+    match = _HEADER.match(content)
+    return match[1].decode("ascii") if match else None

@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from robosc.base.diagnostics import Related, Repair
 from robosc.base.interruption import checkpoint
-from robosc.language.explaining import BASIC_TYPES, CONSTRUCTS, did_you_mean
 from robosc.language.failures import expects_failure
 from robosc.language.interface_types import declare, is_made, link_interface, ros_properties, ros_property
-from robosc.language.scopes import Declared, File, Names, Scope, by_name
+from robosc.language.scopes import File, NameKind, Names, Scope, by_name
+from robosc.language.syntax_messages import BASIC_TYPES, CONSTRUCTS, did_you_mean
 from robosc.model import expression as ex
 from robosc.model import robosc as rsc
 from robosc.model.semantics.communication import RUNNING_WORD
 from robosc.model.semantics.expansion import constant_value
 from robosc.model.semantics.failures import FAILURE, FAILURES
-from robosc.model.semantics.naming import enumeration, written
+from robosc.model.semantics.naming import enumeration, escape_keyword
 from robosc.model.semantics.operators import FUNCTIONS
 from robosc.model.semantics.typing import (
     UNKNOWN,
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
     from robosc.base.diagnostics import Diagnostic
     from robosc.base.ros_types import RosTypes
-    from robosc.language.building import Name
+    from robosc.language.builder import Name
     from robosc.language.tokens import Token
     from robosc.model.semantics.instances import Resolved
 
@@ -81,15 +81,15 @@ def link(
 
 def _by_cause(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
     """Merge the findings of each missing import into the first one, with the other uses as related places."""
-    found: dict[Any, Diagnostic] = {}
+    by_cause: dict[Any, Diagnostic] = {}
     for finding in findings:
         key = finding.hint if finding.hint is not None and finding.hint.startswith(_IMPORT) else finding
-        if key in found:
+        if key in by_cause:
             other = Related(finding.file, finding.span, "this is the same name")
-            found[key] = replace(found[key], related=(*found[key].related, other))
+            by_cause[key] = replace(by_cause[key], related=(*by_cause[key].related, other))
         else:
-            found[key] = finding
-    return list(found.values())
+            by_cause[key] = finding
+    return list(by_cause.values())
 
 
 class Linker:
@@ -123,7 +123,7 @@ class Linker:
         """Link the imported and instantiated components, which all other names may need."""
         for element, names in self._file.references.items():
             if isinstance(element, rsc.ComponentType) and element.eContainer().parameters:
-                template = written(element.eContainer().name)
+                template = escape_keyword(element.eContainer().name)
                 message = f"template `{template}` is an instance of `{names['definition'].text}`, expected its own text"
                 self._report(names["definition"], message, _OWN_TEXT, rule="argument")
             elif isinstance(element, rsc.ImportedComponent):
@@ -190,7 +190,7 @@ class Linker:
         match element:
             case rsc.CommunicationType():
                 name = names["interface"]
-                element.interface = self._definition(rsc.Interface, "interface", Declared.INTERFACE, name)
+                element.interface = self._definition(rsc.Interface, "interface", NameKind.INTERFACE, name)
             case rsc.InterfaceTypeReference():
                 unknown = declare(element, self.interfaces)
                 if unknown is not None:
@@ -200,9 +200,9 @@ class Linker:
                 element.enumeration = self._file.predefined.declared[rsc.ComplexDataType][FAILURE]
             case rsc.ComplexDataTypeReference():
                 name = names["type"]
-                found = self._definition(rsc.ComplexDataType, "object or enum", Declared.DATA_TYPE, name)
-                if found is not None:
-                    element.type = found
+                definition = self._definition(rsc.ComplexDataType, "object or enum", NameKind.DATA_TYPE, name)
+                if definition is not None:
+                    element.type = definition
 
     def _use(self, element: ex.Located, names: Mapping[str, Name]) -> None:
         match element:
@@ -235,18 +235,18 @@ class Linker:
         components, name = library.declared[rsc.Component], names["definition"]
         if name.text in components:
             element.definition = components[name.text]
-        elif not library.may_declare(name.text, Declared.COMPONENT, imported=False):
+        elif not library.may_declare(name.text, NameKind.COMPONENT, imported=False):
             self._missing(name, f"library `{library.base.name}` has no component", components)
 
     def _instantiation(self, element: rsc.InstantiatedComponent, name: Name) -> None:
         components = self._file.declared[rsc.Component]
-        found = components.get(name.text)
-        if found is not None and found.parameters:
-            element.definition = found
-        elif found is not None:
+        template = components.get(name.text)
+        if template is not None and template.parameters:
+            element.definition = template
+        elif template is not None:
             message = f"component `{name.text}` is not a template: it has no parameters"
             self._report(name, message, _OWN_TEXT, rule="argument")
-        elif not self._file.may_declare(name.text, Declared.COMPONENT, imported=False):
+        elif not self._file.may_declare(name.text, NameKind.COMPONENT, imported=False):
             templates = [component.name for component in components.values() if component.parameters]
             self._missing(name, "there is no template", templates)
 
@@ -260,7 +260,7 @@ class Linker:
             argument.parameter = parameters[name.text]
         else:
             repair = did_you_mean(name.text, parameters, cutoff=0.6)
-            texts = tuple(written(other) for other in parameters)
+            texts = tuple(escape_keyword(other) for other in parameters)
             named = Repair(f"its parameters are {enumeration(f'`{text}`' for text in texts)}", choices=texts)
             self._report(name, f"`{made_of.name}` has no parameter `{name.text}`", repair or named, rule="argument")
 
@@ -270,40 +270,42 @@ class Linker:
         if name.text in functions:
             call.function = functions[name.text]
             return
-        found = self.scope.find(rsc.Function, name.text)
-        if len(found) > 1:
-            self._ambiguous("function", name, [file for file, _ in found])
-        elif found:
-            call.function = found[0][1]
-        elif not self._file.may_declare(name.text, Declared.NAMED):
+        matches = self.scope.find(rsc.Function, name.text)
+        if len(matches) > 1:
+            self._ambiguous("function", name, [file for file, _ in matches])
+        elif matches:
+            call.function = matches[0][1]
+        elif not self._file.may_declare(name.text, NameKind.NAMED):
             known = [*functions, *self.scope.usable(rsc.Function), *FUNCTIONS]
             self._missing(name, "there is no function", known, did_you_mean(name.text, known, cutoff=0.6) or _FUNCTION)
 
     def _quantified_template(self, quantifier: rsc.InstanceQuantifier, name: Name) -> None:
         own = self._file.declared[rsc.Component]
-        found = (
+        components = (
             [own[name.text]] if name.text in own else [other for _, other in self.scope.find(rsc.Component, name.text)]
         )
-        templates = [component for component in found if component.parameters or name.text not in own]
+        templates = [component for component in components if component.parameters or name.text not in own]
         if len(templates) == 1:
             quantifier.template = templates[0]
-        elif found and not templates:
-            hint = f"write the condition with `{written(name.text)}` itself"
+        elif components and not templates:
+            hint = f"write the condition with `{escape_keyword(name.text)}` itself"
             self._report(
                 name, f"component `{name.text}` is a component, expected a template or a component of a library", hint
             )
-        elif not found and not self._file.may_declare(name.text, Declared.COMPONENT):
-            self._missing(name, "there is no template", [found.name for found in own.values() if found.parameters])
+        elif not components and not self._file.may_declare(name.text, NameKind.COMPONENT):
+            self._missing(
+                name, "there is no template", [component.name for component in own.values() if component.parameters]
+            )
 
-    def _definition(self, kind: type[_Element], what: str, declared: Declared, name: Name) -> _Element | None:
-        found = self.scope.find(kind, name.text)
-        if len(found) > 1:
-            self._ambiguous(what, name, [file for file, _ in found])
-        elif not found and not self._file.may_declare(name.text, declared):
+    def _definition(self, kind: type[_Element], what: str, declared: NameKind, name: Name) -> _Element | None:
+        definitions = self.scope.find(kind, name.text)
+        if len(definitions) > 1:
+            self._ambiguous(what, name, [file for file, _ in definitions])
+        elif not definitions and not self._file.may_declare(name.text, declared):
             basic = BASIC_TYPES.get(name.text)
             hint = Repair(f"write `{basic}`", basic) if basic else None
             self._missing(name, f"there is no {what}", self.scope.usable(kind), hint)
-        return found[0][1] if len(found) == 1 else None
+        return definitions[0][1] if len(definitions) == 1 else None
 
     def _ambiguous(self, what: str, name: Name, files: Iterable[File]) -> None:
         libraries = " and ".join(f"`{file.base.name}`" for file in files if file.base)
@@ -317,7 +319,7 @@ class Linker:
 
     def _communication_of(self, component: rsc.Component, name: Name) -> Any:
         communications = self.scope.communications(component)
-        return None if communications is None else self._member(communications, name, component, Declared.COMMUNICATION)
+        return None if communications is None else self._member(communications, name, component, NameKind.COMMUNICATION)
 
     # Communication
 
@@ -329,9 +331,9 @@ class Linker:
                 reference.component = component
                 reference.communicationType = self._communication_of(component, name)
             return
-        found = self._bare_communication(reference, name)
-        if found is not None:
-            reference.component, reference.communicationType = found
+        port = self._bare_communication(reference, name)
+        if port is not None:
+            reference.component, reference.communicationType = port
 
     def _bare_communication(
         self, reference: rsc.CommunicationReference, name: Name
@@ -342,26 +344,28 @@ class Linker:
             if name.text in communications:
                 return own, communications[name.text]
             if self._is_library:
-                if not self._file.may_declare(name.text, Declared.COMMUNICATION, imported=False):
+                if not self._file.may_declare(name.text, NameKind.COMMUNICATION, imported=False):
                     self._missing(name, f"component `{own.name}` has no communication", communications, OWN_MEMBERS)
                 return None
-        found = self.scope.communicating(name.text)
-        if not found:
-            if not self.scope.incomplete and not self._file.may_declare(name.text, Declared.COMMUNICATION):
+        ports = self.scope.communicating(name.text)
+        if not ports:
+            if not self.scope.incomplete and not self._file.may_declare(name.text, NameKind.COMMUNICATION):
                 self._missing(name, "there is no communication", self.scope.all_communications())
             return None
         # Duplicate component names are a finding of their own, and a qualified name would stay ambiguous.
-        if len({communication for _, communication in found}) < len({component.name for component, _ in found}):
-            candidates, texts = _first_few(f"{written(component.name)}.{written(name.text)}" for component, _ in found)
+        if len({communication for _, communication in ports}) < len({component.name for component, _ in ports}):
+            candidates, texts = _first_few(
+                f"{escape_keyword(component.name)}.{escape_keyword(name.text)}" for component, _ in ports
+            )
             hint = Repair(f"write {candidates}", choices=texts)
             self._report(name, f"`{name.text}` is ambiguous: it may be {candidates}", hint)
             return None
-        return found[0]
+        return ports[0]
 
     def _component(self, reference: rsc.CommunicationReference, name: Name) -> rsc.Component | None:
         components = self.components(reference)
         component: rsc.Component | None = components.get(name.text)
-        if component is None and not self._file.may_declare(name.text, Declared.COMPONENT, imported=False):
+        if component is None and not self._file.may_declare(name.text, NameKind.COMPONENT, imported=False):
             hint = OWN_MEMBERS if name.text in self.scope.components else None
             repair = self._made_of(name) or hint or self._import_of(name, components)
             self._missing(name, "there is no component", components, repair)
@@ -387,9 +391,13 @@ class Linker:
         template = None if self._is_library else self.scope.components.get(name.text)
         if template is None:
             return None
-        made = [written(part.name) for part in self._parts.values() if self.scope.origin(part) is template]
-        said, texts = _first_few(made or [f"component other is {written(template.name)}(…)"])
-        return Repair(f"`{written(template.name)}` is a template: write {said}", choices=texts if made else ())
+        instance_names = [
+            escape_keyword(part.name) for part in self._parts.values() if self.scope.origin(part) is template
+        ]
+        choice, texts = _first_few(instance_names or [f"component other is {escape_keyword(template.name)}(…)"])
+        return Repair(
+            f"`{escape_keyword(template.name)}` is a template: write {choice}", choices=texts if instance_names else ()
+        )
 
     def _import_of(self, name: Name, known: Iterable[str]) -> str | None:
         """Return the import that may be missing; None if a known name is close or no library has the component."""
@@ -400,24 +408,26 @@ class Linker:
         component = min(like, key=lambda other: (abs(len(other) - len(word)), other), default=None)
         if component is None:
             return None
-        library = written(importable[component])
-        return f"{_IMPORT}`component {written(name.text)} from {library} import {written(component)}`"
+        library = escape_keyword(importable[component])
+        return f"{_IMPORT}`component {escape_keyword(name.text)} from {library} import {escape_keyword(component)}`"
 
-    def _member(self, members: Names, name: Name, component: rsc.Component, declared: Declared) -> Any:
-        found = members.get(name.text)
-        if found is None and not self._file.may_declare_within(self.scope.origin(component), name.text, declared):
-            what = "communication" if declared is Declared.COMMUNICATION else "variable or state"
-            values = [] if declared is Declared.COMMUNICATION else self.scope.values(name.text)
+    def _member(self, members: Names, name: Name, component: rsc.Component, declared: NameKind) -> Any:
+        member = members.get(name.text)
+        if member is None and not self._file.may_declare_within(self.scope.origin(component), name.text, declared):
+            what = "communication" if declared is NameKind.COMMUNICATION else "variable or state"
+            values = [] if declared is NameKind.COMMUNICATION else self.scope.values(name.text)
             hint = self._value_of_enum(name, values[0]) if values else None
             self._missing(name, f"component `{component.name}` has no {what}", members, hint)
-        return found
+        return member
 
     def _value_of_enum(self, name: Name, value: rsc.EnumValue) -> Repair:
         enum = value.eContainer().eContainer()
-        said = f"`{written(name.text)}` is a value of `{written(enum.name)}`: write it without a component"
+        hint_text = (
+            f"`{escape_keyword(name.text)}` is a value of `{escape_keyword(enum.name)}`: write it without a component"
+        )
         tokens = self._file.text.tokens
         at = tokens.index_at(name.start)
-        return Repair(said, elsewhere=((tokens[at - 2].start, tokens[at - 1].end, ""),))
+        return Repair(hint_text, elsewhere=((tokens[at - 2].start, tokens[at - 1].end, ""),))
 
     def _target(self, transition: rsc.Transition | rsc.RequirementTransition, name: Name) -> None:
         if isinstance(transition, rsc.RequirementTransition):
@@ -430,7 +440,7 @@ class Linker:
         states = self.scope.states(own) if own is not None else {}
         if name.text in states:
             transition.target = states[name.text]
-        elif own is not None and not self._file.may_declare_within(own, name.text, Declared.MEMBER):
+        elif own is not None and not self._file.may_declare_within(own, name.text, NameKind.MEMBER):
             self._missing(name, f"component `{own.name}` has no state", states)
 
     # Expressions
@@ -469,7 +479,9 @@ class Linker:
         own = self.around(element, rsc.Component)
         local = own.type.definitions if own is not None and isinstance(own.type, rsc.LocalComponent) else ()
         outer = self._file.base.definitions if self._file.base is not None else ()
-        return by_name(found for found in (*local, *outer) if isinstance(found, rsc.AutomatonRequirement))
+        return by_name(
+            requirement for requirement in (*local, *outer) if isinstance(requirement, rsc.AutomatonRequirement)
+        )
 
     def _requirement_state(self, access: rsc.Access, automaton: rsc.AutomatonRequirement, name: Name) -> None:
         states = by_name(automaton.states)
@@ -481,7 +493,7 @@ class Linker:
     def _in_enum(self, access: rsc.Access, name: Name) -> None:
         if self._named_value(access, name) or self._enum_value(access, name):
             return
-        if not self._file.may_declare(name.text, Declared.ENUM_VALUE, Declared.NAMED):
+        if not self._file.may_declare(name.text, NameKind.ENUM_VALUE, NameKind.NAMED):
             hint = (
                 "the rules of an enum read only `value`, literals, constants, functions, its parameters and enum values"
             )
@@ -493,15 +505,15 @@ class Linker:
 
         Components of this name take precedence.
         """
-        found = self.scope.find(rsc.ComplexDataType, enum.text)
-        if len(found) != 1 or not isinstance(found[0][1], rsc.EnumDataType):
+        definitions = self.scope.find(rsc.ComplexDataType, enum.text)
+        if len(definitions) != 1 or not isinstance(definitions[0][1], rsc.EnumDataType):
             return False
-        definition = found[0][1]
+        definition = definitions[0][1]
         access.enumeration = definition
         values = by_name(rule.value for rule in definition.rules if rule.value)
         if value.text in values:
             access.item = values[value.text]
-        elif not self._file.may_declare_within(definition, value.text, Declared.ENUM_VALUE):
+        elif not self._file.may_declare_within(definition, value.text, NameKind.ENUM_VALUE):
             self._missing(value, f"enum `{definition.name}` has no value", values)
         return True
 
@@ -509,47 +521,47 @@ class Linker:
         """Return the parameters that an expression can read: of its function, and of its enum or template."""
         function = self._nearest(element, rsc.Function)
         around = self._outermost(element)
-        found: dict[str, Any] = {}
+        by_parameter_name: dict[str, Any] = {}
         if isinstance(around, rsc.Component | rsc.EnumDataType):
-            found |= by_name(around.parameters)
-        return found | by_name(function.parameters) if function is not None else found
+            by_parameter_name |= by_name(around.parameters)
+        return by_parameter_name | by_name(function.parameters) if function is not None else by_parameter_name
 
     def elements(self, element: ex.Located) -> Names:
         """Return the array elements that an expression can read: those of the quantifiers around it."""
-        found: dict[str, rsc.ArrayElement] = {}
+        by_element_name: dict[str, rsc.ArrayElement] = {}
         around: ex.Located | None = element if rsc.ArrayElement in self._present else None
         while around is not None:
             around = self._quantifier(around)
             if around is not None:
-                found.setdefault(around.element.name, around.element)
-        return found
+                by_element_name.setdefault(around.element.name, around.element)
+        return by_element_name
 
     def _quantifier(self, element: ex.Located) -> rsc.ArrayQuantifier | None:
         """Return the innermost quantifier over an array whose condition contains an element."""
         path: list[ex.Located] = []
-        found: rsc.ArrayQuantifier | None = None
+        quantifier: rsc.ArrayQuantifier | None = None
         around: ex.Located | None = element
-        while around is not None and found is None:
+        while around is not None and quantifier is None:
             if around in self._quantifiers:
-                found = self._quantifiers[around]
+                quantifier = self._quantifiers[around]
                 break
             path.append(around)
             outer = around.eContainer()
             if isinstance(outer, rsc.ArrayQuantifier) and outer.body is around:
-                found = outer
+                quantifier = outer
             around = None if isinstance(outer, rsc.Definition) else outer
-        self._quantifiers.update(dict.fromkeys(path, found))
-        return found
+        self._quantifiers.update(dict.fromkeys(path, quantifier))
+        return quantifier
 
     def templates(self, element: ex.Located) -> Names:
         """Return the templates whose instances an expression can read: those of the quantifiers around it."""
-        found: dict[str, rsc.Component] = {}
+        by_template_name: dict[str, rsc.Component] = {}
         quantifier = self._nearest(element, rsc.InstanceQuantifier)
         while quantifier is not None:
             if quantifier.template is not None:
-                found.setdefault(quantifier.template.name, quantifier.template)
+                by_template_name.setdefault(quantifier.template.name, quantifier.template)
             quantifier = self._nearest(quantifier.eContainer(), rsc.InstanceQuantifier)
-        return found
+        return by_template_name
 
     def _qualified(self, access: rsc.Access, component: rsc.Component, name: Name) -> None:
         access.component = component
@@ -566,7 +578,7 @@ class Linker:
             ):
                 return
         if members is not None:
-            access.item = self._member(members, name, component, Declared.MEMBER)
+            access.item = self._member(members, name, component, NameKind.MEMBER)
 
     def _call_misread(self, component: rsc.Component, name: Name, behind: Sequence[Name | None]) -> bool:
         """Report a communication that is read without `running`, and return whether the name is one.
@@ -575,7 +587,7 @@ class Linker:
         """
         communication = (self.scope.communications(component) or {}).get(name.text)
         if communication is None or self._file.may_declare_within(
-            self.scope.origin(component), name.text, Declared.MEMBER
+            self.scope.origin(component), name.text, NameKind.MEMBER
         ):
             return False
         word = behind[0] if behind else None
@@ -586,12 +598,12 @@ class Linker:
                 "store in a variable that it was sent",
             )
         elif word is None:
-            call = f"{written(name.text)}.{RUNNING_WORD}"
+            call = f"{escape_keyword(name.text)}.{RUNNING_WORD}"
             self._report(name, f"`{name.text}` can be read as `{call}` only", Repair(f"write `{call}`", call))
         elif word.text == RUNNING_WORD:
             other = behind[1] if len(behind) > 1 and behind[1] is not None else word
             rest = (self._point_before(other).start, other.end, "")
-            message = f"`{written(name.text)}.{RUNNING_WORD}` has no members"
+            message = f"`{escape_keyword(name.text)}.{RUNNING_WORD}` has no members"
             self._report(other, message, Repair(f"leave `.{other.text}` out", elsewhere=(rest,)))
         else:
             repair = did_you_mean(word.text, [RUNNING_WORD], cutoff=0.6)
@@ -604,7 +616,7 @@ class Linker:
         calls = self._calls(component)
         repair = did_you_mean(name.text, calls, cutoff=0.6)
         if repair is None or self._file.may_declare_within(
-            self.scope.origin(component), name.text, Declared.COMMUNICATION
+            self.scope.origin(component), name.text, NameKind.COMMUNICATION
         ):
             return False
         self._report(name, f"component `{component.name}` has no service or action `{name.text}`", repair)
@@ -613,7 +625,9 @@ class Linker:
     def _calls(self, component: rsc.Component) -> Names:
         communications = self.scope.communications(component) or {}
         return {
-            called: found for called, found in communications.items() if isinstance(found, rsc.Service | rsc.Action)
+            called: communication
+            for called, communication in communications.items()
+            if isinstance(communication, rsc.Service | rsc.Action)
         }
 
     def _own_running(self, access: rsc.Access, name: Name, word: Name) -> bool:
@@ -661,12 +675,12 @@ class Linker:
         if name.text in members:
             access.component, access.item = own, members[name.text]
             return
-        own_text = Declared.COMPONENT, Declared.MEMBER, Declared.NAMED
+        own_text = NameKind.COMPONENT, NameKind.MEMBER, NameKind.NAMED
         if self._named_value(access, name) or self._enum_value(access, name):
             return
         if self._file.may_declare(name.text, *own_text, imported=False):
             return
-        if qualifies and self._file.may_declare(name.text, Declared.DATA_TYPE):
+        if qualifies and self._file.may_declare(name.text, NameKind.DATA_TYPE):
             return
         word = self._file.references[access]["item"] if qualifies else None
         if own is not None and self._call_misread(own, name, [word] if word is not None else []):
@@ -680,7 +694,7 @@ class Linker:
             called = self._elsewhere(name, self._calls) if is_call else None
             repair = self._made_of(name) or hint or called or self._import_of(name, known)
             self._missing(name, "there is no component or variable", known, repair)
-        elif not self._file.may_declare(name.text, Declared.ENUM_VALUE, Declared.NAMED):
+        elif not self._file.may_declare(name.text, NameKind.ENUM_VALUE, NameKind.NAMED):
             named = self.scope.usable(rsc.NamedExpression)
             known = [*components, *members, *named, *self.scope.usable(rsc.EnumValue)]
             elsewhere = self._made_of(name) or self._elsewhere(name)
@@ -692,12 +706,12 @@ class Linker:
 
         A name that several libraries declare is reported.
         """
-        found = self.scope.find(rsc.NamedExpression, name.text)
-        if len(found) > 1:
-            self._ambiguous("name", name, [file for file, _ in found])
-        elif found:
-            access.item = found[0][1]
-        return bool(found)
+        definitions = self.scope.find(rsc.NamedExpression, name.text)
+        if len(definitions) > 1:
+            self._ambiguous("name", name, [file for file, _ in definitions])
+        elif definitions:
+            access.item = definitions[0][1]
+        return bool(definitions)
 
     def _elsewhere(
         self, name: Name, having_it: Callable[[rsc.Component], Names | None] | None = None
@@ -705,7 +719,7 @@ class Linker:
         """Return the qualified name for a bare name that other components have as a member, or by `having_it`."""
         members = having_it or self.scope.members
         having = [
-            f"{written(component.name)}.{written(name.text)}"
+            f"{escape_keyword(component.name)}.{escape_keyword(name.text)}"
             for component in (self.scope.components if self._is_library else self._parts).values()
             if name.text in (members(component) or {})
         ]
@@ -723,9 +737,9 @@ class Linker:
             access.item = values[0]
         elif values:
             enums = [value.eContainer().eContainer().name for value in values]
-            said, texts = _first_few(f"{written(enum)}.{written(name.text)}" for enum in enums)
+            choice, texts = _first_few(f"{escape_keyword(enum)}.{escape_keyword(name.text)}" for enum in enums)
             message = f"`{name.text}` is a value of several enums"
-            hint = Repair(f"write {said}", choices=texts) if len(texts) > 1 else "declare an enum in this file"
+            hint = Repair(f"write {choice}", choices=texts) if len(texts) > 1 else "declare an enum in this file"
             self._report(name, message, hint, rule="unique-enum-value")
         return bool(values)
 
@@ -748,9 +762,9 @@ class Linker:
         types = self._types[access]
         while access.segments[len(types) - 1] is not segment:
             types.append(segment_type(types[-1], access.segments[len(types) - 1]))
-        found = self._property(types[-1], name)
-        if found is not None:
-            segment.property = found
+        prop = self._property(types[-1], name)
+        if prop is not None:
+            segment.property = prop
 
     def _property_value(self, element: rsc.ObjectPropertyValue, name: Name) -> None:
         around = element.eContainer().eContainer()
@@ -759,9 +773,9 @@ class Linker:
         else:
             expected = declared_type(around.property.type) if around.property else UNKNOWN
         # The type rules check whether an object is allowed here.
-        found = self._property(expected, name) if isinstance(expected, ObjectType) else None
-        if found is not None:
-            element.property = found
+        prop = self._property(expected, name) if isinstance(expected, ObjectType) else None
+        if prop is not None:
+            element.property = prop
 
     def _property(self, of: Type, name: Name) -> rsc.ObjectProperty | None:
         if of == UNKNOWN:
@@ -774,20 +788,20 @@ class Linker:
             self._report(name, f"there is no property `{name.text}`: its operand is {what}", hint)
             return None
         if is_made(of.definition):
-            made = ros_property(of.definition, name.text, self.interfaces)
-            if made is None:
+            ros_prop = ros_property(of.definition, name.text, self.interfaces)
+            if ros_prop is None:
                 known = ros_properties(of.definition, self.interfaces)
                 self._missing(
                     name, f"the ROS type `{of.definition.name}` has no field that a model can use named", known
                 )
-            return made
+            return ros_prop
         if of.definition not in self._properties:
             self._properties[of.definition] = by_name(of.definition.properties)
         properties = self._properties[of.definition]
         if name.text in properties:
-            found: rsc.ObjectProperty = properties[name.text]
-            return found
-        if not self._file.may_declare_within(of.definition, name.text, Declared.PROPERTY):
+            prop: rsc.ObjectProperty = properties[name.text]
+            return prop
+        if not self._file.may_declare_within(of.definition, name.text, NameKind.PROPERTY):
             self._missing(name, f"object `{of.definition.name}` has no property", properties)
         return None
 
@@ -805,9 +819,9 @@ class Linker:
         The arguments of an instantiated or imported component are outside of it.
         """
         definition = self._outermost(element)
-        made = isinstance(definition, rsc.Component) and not isinstance(definition.type, rsc.LocalComponent)
-        given = made and isinstance(element, ex.Expression)
-        return definition if isinstance(definition, kind) and not given else None
+        is_instance = isinstance(definition, rsc.Component) and not isinstance(definition.type, rsc.LocalComponent)
+        is_argument = is_instance and isinstance(element, ex.Expression)
+        return definition if isinstance(definition, kind) and not is_argument else None
 
     def _outermost(self, element: ex.Located) -> ex.Located | None:
         """Return the definition of the robot or library that contains an element."""
@@ -833,9 +847,9 @@ class Linker:
         while around is not None and around not in known and not isinstance(around, kind | rsc.Definition):
             path.append(around)
             around = around.eContainer()
-        found = known.get(around, around if isinstance(around, kind) else None) if around is not None else None
-        known.update(dict.fromkeys(path, found))
-        return found
+        nearest = known.get(around, around if isinstance(around, kind) else None) if around is not None else None
+        known.update(dict.fromkeys(path, nearest))
+        return nearest
 
     # Findings
 
@@ -851,7 +865,7 @@ class Linker:
         names = list(dict.fromkeys(known))
         repair = hint or did_you_mean(name.text, names, cutoff=0.6)
         if repair is None and listed and 0 < len(names) <= _FEW:
-            texts = tuple(written(other) for other in names)
+            texts = tuple(escape_keyword(other) for other in names)
             repair = Repair(f"there is {enumeration(f'`{text}`' for text in texts)}", choices=texts)
         self._report(name, f"{message} `{name.text}`", repair)
 

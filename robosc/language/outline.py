@@ -12,7 +12,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from robosc.language.grammar import first, first_words, following, is_reserved, last, words_of
-from robosc.language.scopes import Declared
+from robosc.language.scopes import NameKind
 from robosc.language.tokens import Kind, Token
 
 if TYPE_CHECKING:
@@ -67,12 +67,12 @@ DEFINITIONS = _level("Definition", "definition", "Component", COMPONENT)
 _DATA_TYPES = {"object": PROPERTIES, "enum": RULES}
 #: Kind of name that an item declares, by its first keyword.
 DECLARED = {
-    **dict.fromkeys(first_words("Component"), Declared.COMPONENT),
-    **dict.fromkeys(first_words("Interface"), Declared.INTERFACE),
-    **dict.fromkeys(first_words("ComplexDataType"), Declared.DATA_TYPE),
-    **dict.fromkeys(first_words("CommunicationType") | _MESSAGE, Declared.COMMUNICATION),
-    **dict.fromkeys(first_words("Variable", "State"), Declared.MEMBER),
-    **dict.fromkeys(first_words("NamedExpression"), Declared.NAMED),
+    **dict.fromkeys(first_words("Component"), NameKind.COMPONENT),
+    **dict.fromkeys(first_words("Interface"), NameKind.INTERFACE),
+    **dict.fromkeys(first_words("ComplexDataType"), NameKind.DATA_TYPE),
+    **dict.fromkeys(first_words("CommunicationType") | _MESSAGE, NameKind.COMMUNICATION),
+    **dict.fromkeys(first_words("Variable", "State"), NameKind.MEMBER),
+    **dict.fromkeys(first_words("NamedExpression"), NameKind.NAMED),
 }
 _STARTERS = frozenset().union(*(level.starters for level in (RULES, AUTOMATON, COMPONENT, DEFINITIONS)))
 #: Starters that can continue an item, and the starters after which they do.

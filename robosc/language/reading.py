@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 from robosc.base.diagnostics import Repair, in_order
 from robosc.base.files.resources import locate
 from robosc.base.ros_types import RosTypes
-from robosc.language.explaining import did_you_mean
 from robosc.language.failures import names_failures
 from robosc.language.libraries import LibraryPath
 from robosc.language.linking import RULE, link
 from robosc.language.recovery import parse_file
+from robosc.language.syntax_messages import did_you_mean
 from robosc.language.text import Documents, decode
 from robosc.model import robosc as rsc
 from robosc.model.semantics.failures import PREDEFINED
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from robosc.base.diagnostics import Diagnostic
-    from robosc.language.building import Name
+    from robosc.language.builder import Name
     from robosc.language.scopes import File
     from robosc.model.semantics.instances import Resolved
 
@@ -161,11 +161,11 @@ class _Reader:
         return self._files[identity] if identity in self._files else self._open(path, str(path))
 
     def _library(self, file: File, path: Path, name: Name) -> File | None:
-        found = self._path.find(name.text, path)
-        if len(found) != 1:
-            self._report(file, name, *(self._several(name, found) if found else self._none(name, path)))
+        files = self._path.find(name.text, path)
+        if len(files) != 1:
+            self._report(file, name, *(self._several(name, files) if files else self._none(name, path)))
             return None
-        identity = found[0].resolve()
+        identity = files[0].resolve()
         if identity in self._reading:
             reading = list(self._reading)
             cycle = [self._files[imported] for imported in reading[reading.index(identity) :]]
@@ -173,16 +173,16 @@ class _Reader:
             message = f"libraries import each other in a circle: {' -> '.join([*names, name.text])}"
             self._report(file, name, message, "move the shared parts to a separate library", "import-cycle")
             return None
-        return self._files[identity] if identity in self._files else self._open(found[0], str(found[0]))
+        return self._files[identity] if identity in self._files else self._open(files[0], str(files[0]))
 
-    def _several(self, name: Name, found: list[Path]) -> tuple[str, str]:
-        paths = " and ".join(f"`{path}`" for path in found)
+    def _several(self, name: Name, files: list[Path]) -> tuple[str, str]:
+        paths = " and ".join(f"`{path}`" for path in files)
         return f"library `{name.text}` is declared by several files of one folder: {paths}", "keep one of them"
 
     def _none(self, name: Name, path: Path) -> tuple[str, Repair | str]:
         where = "libraries are searched beside this file and in the folders of -I and ROBOSC_PATH"
         return f"there is no library `{name.text}`", did_you_mean(
-            name.text, self._path.known(path), cutoff=0.75
+            name.text, self._path.library_names(path), cutoff=0.75
         ) or where
 
     def _report(self, file: File, name: Name, message: str, repair: Repair | str, rule: str = RULE) -> None:

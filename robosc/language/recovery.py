@@ -11,11 +11,11 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from robosc.base.diagnostics import Related, Repair
-from robosc.language.building import Builder
-from robosc.language.explaining import expected, found, hint, misread
+from robosc.language.builder import Builder
 from robosc.language.grammar import Failure, first_words, is_reserved, parse
 from robosc.language.outline import DECLARED, DEFINITIONS, PROPERTIES, RULES, Block, Brace, Outline
-from robosc.language.scopes import Declared, File, SkippedRegions
+from robosc.language.scopes import File, NameKind, SkippedRegions
+from robosc.language.syntax_messages import enumerate_expected, hint, misread, quote_token
 from robosc.language.tokens import Kind, Token, too_complex
 
 if TYPE_CHECKING:
@@ -44,13 +44,13 @@ def parse_file(text: Text) -> File:
 def _parsed(text: Text) -> File:
     tree = None if too_complex(text.tokens) else parse(text.content, "Base")
     if tree is None or isinstance(tree, Failure):
-        return recovered(text)
+        return recover(text)
     builder = Builder(text)
     base = builder.build(tree)
     return File(text, base, builder.references, builder.declared, builder.bounded, findings=builder.findings)
 
 
-def recovered(text: Text) -> File:
+def recover(text: Text) -> File:
     """Return the readable parts of a text that the grammar rejects, with a finding for each fault."""
     return _Recovery(text).parse()
 
@@ -76,9 +76,9 @@ class _Recovery:
         if last.kind is Kind.OPEN_COMMENT:
             self._report(len(tokens) - 1, "this comment is not closed", "end it with `*/`")
             self._blank(last.start, last.end)
-        if not {"robot", "library"} & {first.text, _meant(first)} and DEFINITIONS.starter(first) is None:
+        if not {"robot", "library"} & {first.text, _intended_word(first)} and DEFINITIONS.starter(first) is None:
             if first is not last or last.kind is not Kind.OPEN_COMMENT:
-                self._report(0, f"found {found(first)}, expected `robot` or `library`")
+                self._report(0, f"found {quote_token(first)}, expected `robot` or `library`")
             return File(self._text, None, findings=self._findings)
         outline = Outline(tokens)
         root = outline.file()
@@ -113,7 +113,7 @@ class _Recovery:
                 opened = None if brace.opened is None else tokens[brace.opened]
                 line = self._text.span(opened.start, opened.end).line if opened else None
                 why = f"the `{{` in line {line} is not closed" if line else None
-                self._report(brace.index, f"found {found(token)}, expected `{brace.text}`", why)
+                self._report(brace.index, f"found {quote_token(token)}, expected `{brace.text}`", why)
             at_end = at_end or token.kind is Kind.END
             if brace.offset is not None:
                 self._content[brace.offset] = brace.text
@@ -124,7 +124,7 @@ class _Recovery:
         if root.after < len(tokens) and tokens[root.after].kind is not Kind.OPEN_COMMENT:
             token = tokens[root.after]
             hint = "a file has one robot or one library" if token.is_keyword("robot", "library") else None
-            self._report(root.after, f"found {found(token)}, expected the end of the file", hint)
+            self._report(root.after, f"found {quote_token(token)}, expected the end of the file", hint)
             self._skip(root.after, len(tokens))
 
     # Items
@@ -190,15 +190,17 @@ class _Recovery:
         if named < index:
             index, failure = named, replace(failure, expected=("UnreservedName",))
             token = tokens[index]
-        wanted = f"expected {expected(failure.expected, block.level)}"
-        message = f"found {found(token)}, {wanted}"
+        expectation = f"expected {enumerate_expected(failure.expected, block.level)}"
+        message = f"found {quote_token(token)}, {expectation}"
         repair = hint(tokens, index, failure.expected, block)
         if index >= block.after and token.is_first:
             # The missing words belong at the end of the item, not at the next one.
             end = tokens[index - 1].end
-            message = f"found {found(token)} in line {self._text.span(token.start, token.end).line}, {wanted}"
-            said = repair._replace(text=None, choices=()) if isinstance(repair, Repair) else repair
-            self._findings.append(self._text.error("syntax", end, end, message, said))
+            message = (
+                f"found {quote_token(token)} in line {self._text.span(token.start, token.end).line}, {expectation}"
+            )
+            hint_text = repair._replace(text=None, choices=()) if isinstance(repair, Repair) else repair
+            self._findings.append(self._text.error("syntax", end, end, message, hint_text))
         else:
             self._report(index, message, repair)
 
@@ -235,7 +237,9 @@ class _Recovery:
         if isinstance(tree, Failure):
             # Each item parses by itself. Should they fail to parse together, the failure is reported at its position.
             index = self._tokens.index_at(tree.position + offset)
-            self._report(index, f"found {found(self._tokens[index])}, expected {expected(tree.expected, None)}")
+            self._report(
+                index, f"found {quote_token(self._tokens[index])}, expected {enumerate_expected(tree.expected, None)}"
+            )
             return None
         base: rsc.Base = builder.build(tree, offset)
         return base
@@ -272,15 +276,15 @@ class _Recovery:
         # A keyword in place of a name is the keyword after a missing name.
         named = any(word.is_name and not is_reserved(word.text) for word in words)
         if block.level is PROPERTIES:
-            unseen = {Declared.PROPERTY} if first.kind is not Kind.WORD else set()
+            unseen = {NameKind.PROPERTY} if first.kind is not Kind.WORD else set()
         elif block.level is RULES:
-            unseen = {Declared.ENUM_VALUE} if not named or first.is_keyword("->") else set()
+            unseen = {NameKind.ENUM_VALUE} if not named or first.is_keyword("->") else set()
         else:
             unseen = {DECLARED[starter]} if starter in DECLARED and not named else set()
         if (starter == "component" and not block.items) or any(word.is_keyword("import") for word in words):
             # An import may declare any of these.
-            unseen |= {Declared.COMMUNICATION, Declared.MEMBER, Declared.INTERFACE, Declared.DATA_TYPE}
-            unseen |= {Declared.ENUM_VALUE, Declared.PROPERTY}
+            unseen |= {NameKind.COMMUNICATION, NameKind.MEMBER, NameKind.INTERFACE, NameKind.DATA_TYPE}
+            unseen |= {NameKind.ENUM_VALUE, NameKind.PROPERTY}
         place = self._text.span(block.start, block.end)
         self._regions.nameless += ((kind, place) for kind in unseen)
 
@@ -296,17 +300,17 @@ class _Recovery:
 
 def _by_cause(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
     """Merge the findings of each keyword used as a name into the first one, with the edits of all."""
-    found: list[Diagnostic] = []
+    merged: list[Diagnostic] = []
     firsts: dict[str, int] = {}
     for finding in findings:
         word = finding.edits[0].text if finding.edits else ""
-        if word.startswith("^") and firsts.setdefault(word, len(found)) < len(found):
-            first = found[firsts[word]]
+        if word.startswith("^") and firsts.setdefault(word, len(merged)) < len(merged):
+            first = merged[firsts[word]]
             other = Related(finding.file, finding.span, f"`{word}` is also missing here")
-            found[firsts[word]] = replace(first, edits=first.edits + finding.edits, related=(*first.related, other))
+            merged[firsts[word]] = replace(first, edits=first.edits + finding.edits, related=(*first.related, other))
         else:
-            found.append(finding)
-    return found
+            merged.append(finding)
+    return merged
 
 
 def _without_consequences(findings: Sequence[Diagnostic]) -> list[Diagnostic]:
@@ -319,6 +323,6 @@ def _without_consequences(findings: Sequence[Diagnostic]) -> list[Diagnostic]:
     ]
 
 
-def _meant(token: Token) -> str | None:
+def _intended_word(token: Token) -> str | None:
     """Return the first word of a file that a token was meant to be."""
     return next(iter(get_close_matches(token.text, ["library", "robot"], n=1, cutoff=0.7)), None)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from robosc.base.diagnostics import Diagnostic, Span
-    from robosc.language.building import Name
+    from robosc.language.builder import Name
     from robosc.language.text import Text
     from robosc.model.semantics.instances import Resolved
 
@@ -31,7 +31,7 @@ def by_name(elements: Iterable[Any]) -> dict[str, Any]:
     return names
 
 
-class Declared(Enum):
+class NameKind(Enum):
     """Kind of a declared name."""
 
     COMPONENT = auto()
@@ -58,12 +58,12 @@ class SkippedRegions:
     """
 
     names: set[str] = field(default_factory=set)
-    nameless: list[tuple[Declared, Span]] = field(default_factory=list)
+    nameless: list[tuple[NameKind, Span]] = field(default_factory=list)
     mended: bool = False
     skipped: list[tuple[int, int]] = field(default_factory=list)
     uncertain: list[tuple[int, int]] = field(default_factory=list)
 
-    def may_declare(self, name: str, kinds: tuple[Declared, ...], within: Span | None = None) -> bool:
+    def may_declare(self, name: str, kinds: tuple[NameKind, ...], within: Span | None = None) -> bool:
         """Return whether skipped text may declare an unknown name of one of these kinds.
 
         Only a declaration within a definition can declare a member of it. If braces were mended, the intended nesting
@@ -125,13 +125,15 @@ class File:
     @cached_property
     def names(self) -> list[Reference]:
         """All names in the text that refer to an element, in order; skipped text is not included."""
-        found = [Reference(name.text, name.start, name.end, element) for element, name in self.declared_names.items()]
-        found += (
+        references = [
+            Reference(name.text, name.start, name.end, element) for element, name in self.declared_names.items()
+        ]
+        references += (
             Reference(name.text, name.start, name.end, getattr(element, feature), element, feature)
             for element, names in self.references.items()
             for feature, name in names.items()
         )
-        return sorted(found, key=lambda name: name.start)
+        return sorted(references, key=lambda name: name.start)
 
     def occurrences(self, element: Any) -> list[Reference]:
         """Return the references of the text to an element, including its declaration, in order."""
@@ -140,8 +142,8 @@ class File:
     def name_at(self, offset: int) -> Reference | None:
         """Return the name that contains an offset or ends at it, or None if there is none."""
         after = bisect_right(self.names, offset, key=lambda name: name.start)
-        found = self.names[after - 1] if after else None
-        return found if found is not None and offset <= found.end else None
+        candidate = self.names[after - 1] if after else None
+        return candidate if candidate is not None and offset <= candidate.end else None
 
     @property
     def skipped(self) -> list[tuple[int, int]]:
@@ -168,14 +170,14 @@ class File:
     @cached_property
     def enum_values(self) -> Mapping[str, list[rsc.EnumValue]]:
         """Enum values by name: from each enum the first value with that name."""
-        found: dict[str, list[rsc.EnumValue]] = {}
+        values: dict[str, list[rsc.EnumValue]] = {}
         for definition in self.base.definitions if self.base is not None else ():
             if isinstance(definition, rsc.EnumDataType):
                 for name, value in by_name(rule.value for rule in definition.rules if rule.value).items():
-                    found.setdefault(name, []).append(value)
-        return found
+                    values.setdefault(name, []).append(value)
+        return values
 
-    def may_declare(self, name: str, *kinds: Declared, imported: bool = True) -> bool:
+    def may_declare(self, name: str, *kinds: NameKind, imported: bool = True) -> bool:
         """Return whether unreadable text may declare an unknown name.
 
         The text can be in this file or, if `imported`, in a library that it imports from.
@@ -185,7 +187,7 @@ class File:
         files = self._files if imported else ()
         return any(None in file.libraries.values() or file.regions.may_declare(name, kinds) for file in files)
 
-    def may_declare_within(self, definition: rsc.Definition, name: str, kind: Declared) -> bool:
+    def may_declare_within(self, definition: rsc.Definition, name: str, kind: NameKind) -> bool:
         """Return whether unreadable text of a definition, in this file or a library, may declare a name."""
         regions = self._file_of[definition.eContainer()].regions
         return regions.may_declare(name, (kind,), definition.source.span if definition.source else None)
@@ -193,14 +195,14 @@ class File:
     @cached_property
     def _files(self) -> list[File]:
         """The file itself, all files that it imports directly or indirectly, and the predefined library."""
-        found, pending = {self: None}, [self]
+        reached, pending = {self: None}, [self]
         while pending:
             current = pending.pop()
             libraries = [*current.libraries.values(), current.predefined]
-            imported = [file for file in libraries if file is not None and file not in found]
-            found |= dict.fromkeys(imported)
+            imported = [file for file in libraries if file is not None and file not in reached]
+            reached |= dict.fromkeys(imported)
             pending += imported
-        return list(found)
+        return list(reached)
 
     @cached_property
     def _file_of(self) -> dict[rsc.Base | None, File]:
@@ -241,9 +243,11 @@ class Scope:
         if own is not None:
             return [(self._file, own)]
         for libraries in (self._imports, self._predefined):
-            found = [(library, library.declared[kind][name]) for library in libraries if name in library.declared[kind]]
-            if found:
-                return found
+            definitions = [
+                (library, library.declared[kind][name]) for library in libraries if name in library.declared[kind]
+            ]
+            if definitions:
+                return definitions
         return []
 
     def values(self, name: str) -> list[rsc.EnumValue]:
@@ -290,11 +294,11 @@ class Scope:
 
     @cached_property
     def _communicating(self) -> dict[str, list[tuple[rsc.Component, rsc.CommunicationType]]]:
-        found: dict[str, list[tuple[rsc.Component, rsc.CommunicationType]]] = {}
+        by_name: dict[str, list[tuple[rsc.Component, rsc.CommunicationType]]] = {}
         for instance in self._instances:
             for name, communication in (self.communications(instance.component) or {}).items():
-                found.setdefault(name, []).append((instance.component, communication))
-        return found
+                by_name.setdefault(name, []).append((instance.component, communication))
+        return by_name
 
     def all_communications(self) -> list[str]:
         """Return the names of the communications of all components."""

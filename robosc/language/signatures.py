@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from robosc.language.describing import type_text
+from robosc.language.hover import type_text
 from robosc.language.tokens import Kind, Tokens
 from robosc.model import robosc as rsc
 from robosc.model.semantics.operators import FUNCTIONS
@@ -27,10 +27,10 @@ class Signature:
 
 def signature(reading: Reading, offset: int) -> Signature | None:
     """Return the signature for the innermost parentheses around an offset, or None if there is none."""
-    found = _call(reading.file.text.content[:offset])
-    if found is None:
+    call = _call(reading.file.text.content[:offset])
+    if call is None:
         return None
-    name, position, named = found
+    name, position, named = call
     if name in FUNCTIONS:
         count = FUNCTIONS[name].parameters
         parameters = ["a", "b"][:count] if count else ["a"]

@@ -59,10 +59,10 @@ class Text:
         words: list[str] = []
         while line > 1:
             line -= 1
-            found = _COMMENT.fullmatch(self.content, self._lines.starts[line - 1], self._lines.starts[line] - 1)
-            if found is None:
+            match = _COMMENT.fullmatch(self.content, self._lines.starts[line - 1], self._lines.starts[line] - 1)
+            if match is None:
                 break
-            words[:0] = found["words"].split()
+            words[:0] = match["words"].split()
         return " ".join(words) or None
 
     def offset(self, line: int, column: int) -> int:
@@ -89,7 +89,7 @@ class Text:
         # Decoding drops an unpaired first half, and thereby the character that it belongs to.
         return start + len(units.decode("utf-16-le", "ignore"))
 
-    def replaced(self, start: int, end: int, text: str) -> tuple[Edit, ...]:
+    def replace_tokens(self, start: int, end: int, text: str) -> tuple[Edit, ...]:
         """Return the edits that replace the tokens between two offsets by a text. Comments between them stay."""
         if start == end:
             return (Edit(self.span(start, end), text),)
@@ -105,7 +105,7 @@ class Text:
         """
         content = self.content if written is None else written
         mark = len(content) - len(content.removeprefix(_MARK))
-        starts = [mark, *(found.end() for found in _BREAK.finditer(content))]
+        starts = [mark, *(match.end() for match in _BREAK.finditer(content))]
         pieces: list[str] = []
         behind = 0
         for edit in sorted(edits):
@@ -122,13 +122,15 @@ class Text:
     def error(self, rule: str, start: int, end: int, message: str, repair: Repair | str | None = None) -> Diagnostic:
         """Return a finding between two offsets; the text of a `Repair` replaces the text between them."""
         span = self.span(start, end)
-        made = Diagnostic(self.file, span, Severity.ERROR, rule, message)
+        finding = Diagnostic(self.file, span, Severity.ERROR, rule, message)
         if not isinstance(repair, Repair):
-            return replace(made, hint=repair)
-        edits = [edit for place in repair.elsewhere for edit in self.replaced(*place)]
-        edits += [] if repair.text is None else self.replaced(start, end, repair.text)
-        alternatives = [Alternative(f"write `{text}`", self.replaced(start, end, text)) for text in repair.choices]
-        return replace(made, hint=repair.hint, edits=tuple(edits), alternatives=tuple(alternatives))
+            return replace(finding, hint=repair)
+        edits = [edit for place in repair.elsewhere for edit in self.replace_tokens(*place)]
+        edits += [] if repair.text is None else self.replace_tokens(start, end, repair.text)
+        alternatives = [
+            Alternative(f"write `{text}`", self.replace_tokens(start, end, text)) for text in repair.choices
+        ]
+        return replace(finding, hint=repair.hint, edits=tuple(edits), alternatives=tuple(alternatives))
 
 
 class Documents:

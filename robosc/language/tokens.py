@@ -98,13 +98,13 @@ class Tokens:
     def runs(self, first: int, last: int) -> list[tuple[int, int]]:
         """Return the offsets of the tokens from one index to another, inclusive, split at comments."""
         start, end = self[first].start, self[last].end
-        found: list[tuple[int, int]] = []
+        ranges: list[tuple[int, int]] = []
         for comment in self.comments[bisect_left(self.comments, (start, 0)) : bisect_left(self.comments, (end, 0))]:
             behind = self.index_at(comment[0])
             if self[behind].start != start:  # several comments can stand between two tokens
-                found.append((start, self[behind - 1].end))
+                ranges.append((start, self[behind - 1].end))
                 start = self[behind].start
-        return [*found, (start, end)]
+        return [*ranges, (start, end)]
 
     def has_comment(self, start: int, end: int) -> bool:
         """Return whether a comment begins between two offsets."""
@@ -119,13 +119,13 @@ class Tokens:
 def _tokens(text: str, comments: list[tuple[int, int]]) -> Iterator[Token]:
     previous, start_of_line = Token(Kind.END, "", 0, 0), 0
     is_use = names_follow = False
-    for found in _TOKEN.finditer(text):
-        if found.lastgroup is None:
+    for match in _TOKEN.finditer(text):
+        if match.lastgroup is None:
             continue
-        if found.lastgroup == "COMMENT":
-            comments.append(found.span())
+        if match.lastgroup == "COMMENT":
+            comments.append(match.span())
             continue
-        kind, (start, end) = _KINDS[found.lastgroup], found.span()
+        kind, (start, end) = _KINDS[match.lastgroup], match.span()
         word = text[start:end]
         line = text.rfind("\n", previous.end, start) if start > previous.end else -1
         if line >= 0:

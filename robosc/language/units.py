@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robosc.base.ros_types import DefinitionError, Section
 from robosc.base.ros_types.units import UNITS
-from robosc.base.ros_types.wire import PRIMITIVES, Basic, Nested, Sequence
-from robosc.language.outlining import own_elements, span
+from robosc.base.ros_types.wire import PRIMITIVES, Basic, NestedType, Sequence
+from robosc.language.document_symbols import own_elements, span
 from robosc.model import robosc as rsc
-from robosc.model.semantics.communication import carried, event, sent
+from robosc.model.semantics.communication import carrying_events, event, sending_event
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -32,53 +32,53 @@ def units(file: File, ros_types: RosTypes) -> Iterator[tuple[int, str]]:
     objects = _objects(file)
     for element in own_elements(file):
         if isinstance(element, rsc.Access) and element.value:
-            found = _read(element, objects)
+            measured = _read(element, objects)
             for segment in element.segments:
                 if isinstance(segment, rsc.PropertySegment):
-                    found = _field(found, segment.property, ros_types)
-            yield from _told(file, element, found)
+                    measured = _field(measured, segment.property, ros_types)
+            yield from _unit_notes(file, element, measured)
         elif isinstance(element, rsc.ProvideStatement):
             reference = element.communicationType
             communication = reference.communicationType if reference is not None else None
-            data = _data(communication, sent(communication))
+            data = _data(communication, sending_event(communication))
             yield from _provided(file, element.data, data, ros_types)
 
 
-def _provided(file: File, value: Any, found: _Measured | None, ros_types: RosTypes) -> Iterator[tuple[int, str]]:
+def _provided(file: File, value: Any, measured: _Measured | None, ros_types: RosTypes) -> Iterator[tuple[int, str]]:
     if not isinstance(value, rsc.ObjectValue):
-        yield from _told(file, value, found)
+        yield from _unit_notes(file, value, measured)
         return
-    for given in value.properties:
-        yield from _provided(file, given.value, _field(found, given.property, ros_types), ros_types)
+    for field in value.properties:
+        yield from _provided(file, field.value, _field(measured, field.property, ros_types), ros_types)
 
 
-def _told(file: File, element: Any, found: _Measured | None) -> Iterator[tuple[int, str]]:
+def _unit_notes(file: File, element: Any, measured: _Measured | None) -> Iterator[tuple[int, str]]:
     """Yield the unit of a number."""
-    is_number = found is not None and isinstance(found.wire, Basic) and found.wire.name in PRIMITIVES
-    if found is not None and is_number and found.unit is not None and element is not None:
-        yield span(file, element)[1], found.unit
+    is_number = measured is not None and isinstance(measured.wire, Basic) and measured.wire.name in PRIMITIVES
+    if measured is not None and is_number and measured.unit is not None and element is not None:
+        yield span(file, element)[1], measured.unit
 
 
 def _objects(file: File) -> Mapping[Any, _Measured]:
     """Return the ROS types of the objects that a text declares, from the interfaces of its communications."""
-    found: dict[Any, _Measured] = {}
+    measured_objects: dict[Any, _Measured] = {}
     for communication in own_elements(file):
         if isinstance(communication, rsc.CommunicationType):
-            for row, declared in carried(communication):
+            for row, declared in carrying_events(communication):
                 data = _data(communication, row)
                 named = declared.type if isinstance(declared, rsc.ComplexDataTypeReference) else None
                 if isinstance(named, rsc.EnumDataType) and isinstance(named.type, rsc.ComplexDataTypeReference):
                     named = named.type.type
                 if data is not None and isinstance(named, rsc.ObjectDataType):
-                    found.setdefault(named, data)
-    return found
+                    measured_objects.setdefault(named, data)
+    return measured_objects
 
 
 def _data(communication: rsc.CommunicationType | None, row: PortEvent | None) -> _Measured | None:
     """Return the data of an event of a communication, if its ROS type is known."""
     if communication is None or communication.interface is None or row is None or row.section is None:
         return None
-    return _Measured(Nested(communication.interface.package, communication.interface.type), row.section)
+    return _Measured(NestedType(communication.interface.package, communication.interface.type), row.section)
 
 
 def _read(access: rsc.Access, objects: Mapping[Any, _Measured]) -> _Measured | None:
@@ -91,24 +91,24 @@ def _read(access: rsc.Access, objects: Mapping[Any, _Measured]) -> _Measured | N
             return _data(communication, event(communication, around.resultType))
         if isinstance(around, rsc.EnumDataType):
             if isinstance(around.type, rsc.InterfaceTypeReference):
-                return _Measured(Nested(around.type.package, around.type.rosType), Section.MESSAGE)
+                return _Measured(NestedType(around.type.package, around.type.rosType), Section.MESSAGE)
             return objects.get(around.type.type) if isinstance(around.type, rsc.ComplexDataTypeReference) else None
         around = around.eContainer()
     return None
 
 
-def _field(found: _Measured | None, field: rsc.ObjectProperty | None, ros_types: RosTypes) -> _Measured | None:
-    if found is None or field is None or not isinstance(found.wire, Nested):
+def _field(measured: _Measured | None, field: rsc.ObjectProperty | None, ros_types: RosTypes) -> _Measured | None:
+    if measured is None or field is None or not isinstance(measured.wire, NestedType):
         return None
-    package, name = found.wire.package, found.wire.name
+    package, name = measured.wire.package, measured.wire.name
     for distribution in ros_types.distributions:
         try:
-            wire = (distribution.fields(package, name, found.section) or {}).get(field.name)
+            wire = (distribution.fields(package, name, measured.section) or {}).get(field.name)
         except DefinitionError:
             continue
         while isinstance(wire, Sequence):
             wire = wire.element
         if wire is not None:
-            unit = UNITS.get((package, name), {}).get(field.name, found.unit)
+            unit = UNITS.get((package, name), {}).get(field.name, measured.unit)
             return _Measured(wire, Section.MESSAGE, unit)
     return None

@@ -14,7 +14,7 @@ from robosc.model.semantics.typing import EnumType
 
 if TYPE_CHECKING:
     from robosc.model import rosgraph, sct
-    from robosc.model.semantics.inputs import Computed, FailureReason
+    from robosc.model.semantics.inputs import ComputedValue, FailureReason
     from robosc.model.semantics.instances import InstanceVariable
 
 #: Target type of each basic type without bounds, and the value of a variable without an initial value.
@@ -53,22 +53,22 @@ class Declarations:
             return _BASIC[type(declared)][0]()
         return ex.EnumerationType(enumeration=self.enumeration(_enum(declared)))
 
-    def computed(self, told: Computed) -> ex.Type:
+    def computed(self, value: ComputedValue) -> ex.Type:
         """Return the type of a value computed from data. An integer has bounds (rule `integer-range`)."""
-        if isinstance(told.type, EnumType):
-            return ex.EnumerationType(enumeration=self.enumeration(told.type.definition))
-        if told.bounds is None:
+        if isinstance(value.type, EnumType):
+            return ex.EnumerationType(enumeration=self.enumeration(value.type.definition))
+        if value.bounds is None:
             return ex.BooleanType()
-        return ex.IntegerType(minimum=told.bounds[0], maximum=told.bounds[1])
+        return ex.IntegerType(minimum=value.bounds[0], maximum=value.bounds[1])
 
-    def reason(self, told: FailureReason) -> ex.Type:
+    def reason(self, source: FailureReason) -> ex.Type:
         """Return the type of the reasons for which a service or action can fail.
 
         They are consecutive literals of the enum.
         """
-        literals = {literal.name: literal for literal in self.enumeration(told.enum).literals}
-        possible = [literal for name, literal in literals.items() if name in reasons(told.port.communication)]
-        return ex.EnumerationType(enumeration=self.enumerations[told.enum], first=possible[0], last=possible[-1])
+        literals = {literal.name: literal for literal in self.enumeration(source.enum).literals}
+        possible = [literal for name, literal in literals.items() if name in reasons(source.port.communication)]
+        return ex.EnumerationType(enumeration=self.enumerations[source.enum], first=possible[0], last=possible[-1])
 
     def enumeration(self, enum: robosc.EnumDataType) -> ex.Enumeration:
         """Return the enumeration of an enum."""

@@ -14,7 +14,7 @@ from robosc.model.semantics.cone_of_influence import accesses, read_data
 from robosc.model.semantics.evaluation import Value, evaluate, literal
 from robosc.model.semantics.instances import PortInstance
 from robosc.model.semantics.naming import Names
-from robosc.model.semantics.operators import COMPARISONS, FUNCTIONS, Rule, operator_of
+from robosc.model.semantics.operators import COMPARISONS, FUNCTIONS, TypeRule, operator_of
 from robosc.model.semantics.printing import conjunction, disjunction
 from robosc.model.semantics.typing import DOUBLE, STRING, ArrayType, ObjectType, Types, declared_type
 from robosc.model.semantics.walks import fold, operands, with_operands
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from robosc.m2m.declarations import Declarations
     from robosc.m2m.trace import Trace
-    from robosc.model.semantics.cone_of_influence import Reading
+    from robosc.model.semantics.cone_of_influence import InputRead
     from robosc.model.semantics.instances import Instance, InstanceParameter, InstanceVariable
 
     #: Translates an access with segments, whose indices are translated already. Returns the expression and the type of
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     ]
 
 
-class Carried(NamedTuple):
+class ReceivedValue(NamedTuple):
     """Meaning of `value` at the place of an expression: data of a type, below some fields of the received message.
 
     `within` is the instance that declares the type.
@@ -115,15 +115,15 @@ class SctExpressions(_Expressions):
         """
         written = self._trace.instances.expanded(expression, within)
         readings = list(read_data(self._trace.instances, written, within, transition, assigned))
-        told = [reading for reading in readings if reading.told is not None and not reading.is_readable]
-        made = self._translated(written, within, {reading.part: self._input(reading) for reading in told})
+        inputs = [reading for reading in readings if reading.source is not None and not reading.is_readable]
+        translated = self._translated(written, within, {reading.part: self._input(reading) for reading in inputs})
         demanded = [reading for reading in readings if reading.is_readable]
         present = conjunction(sct.InputReference(input=self._input(reading)) for reading in demanded)
         if present is None or assigned is None:
-            return made
+            return translated
         # An assignment without a readable value does not happen.
-        kept = sct.VariableReference(variable=self._trace.variables[assigned])
-        return ex.Conditional(condition=present, then=made, otherwise=kept)
+        unchanged = sct.VariableReference(variable=self._trace.variables[assigned])
+        return ex.Conditional(condition=present, then=translated, otherwise=unchanged)
 
     def _translated(
         self, written: ex.Expression, within: Instance | None, inputs: Mapping[ex.Expression, sct.Input]
@@ -142,15 +142,15 @@ class SctExpressions(_Expressions):
                 return type(original)(value=original.value)  # type: ignore[attr-defined,call-arg]
             if isinstance(original, ex.FunctionCall) and next(accesses(original), None) is None:
                 return literal(evaluate(original, _no_name))
-            made = with_operands(original, operands)
-            is_table = isinstance(made, COMPARISONS) and self._some(operands, DOUBLE, STRING)
-            return _table(made, original) if is_table else made
+            copy = with_operands(original, operands)
+            is_table = isinstance(copy, COMPARISONS) and self._some(operands, DOUBLE, STRING)
+            return _table(copy, original) if is_table else copy
 
         return fold(translated, written, lambda part: () if part in inputs else operands(part))
 
-    def _input(self, reading: Reading) -> sct.Input:
-        assert reading.told is not None
-        return self._trace.inputs[reading.told]
+    def _input(self, reading: InputRead) -> sct.Input:
+        assert reading.source is not None
+        return self._trace.inputs[reading.source]
 
 
 class NodeExpressions(_Expressions):
@@ -172,7 +172,7 @@ class NodeExpressions(_Expressions):
         self._wire = wire
 
     def __call__(
-        self, expression: ex.Expression, within: Instance | None, data: Carried | None = None
+        self, expression: ex.Expression, within: Instance | None, data: ReceivedValue | None = None
     ) -> ex.Expression:
         """Translate an expression for the node. `within` is its instance, `data` the meaning of `value`."""
         names = Names()
@@ -184,23 +184,23 @@ class NodeExpressions(_Expressions):
             if isinstance(element, robosc.ArrayElement):
                 array, declaring = reached[element.eContainer().array]
                 assert isinstance(array, robosc.Array)
-                made, kind = self._wire(array.type, declaring, (), original, indices)
+                expression, kind = self._wire(array.type, declaring, (), original, indices)
                 if element not in quantifiers:
                     quantifiers[element] = rosgraph.ArrayQuantifier(name=names.fresh(element.name))
-                _start(made).quantifier = quantifiers[element]
+                _start(expression).quantifier = quantifiers[element]
             elif original.value:
                 assert data is not None
                 declaring = data.within
-                made, kind = self._wire(data.type, declaring, data.fields, original, indices)
+                expression, kind = self._wire(data.type, declaring, data.fields, original, indices)
             else:
                 owned = self._trace.instances.variable(original, within)
                 if owned is None or not isinstance(declared_type(owned.type), ArrayType | ObjectType):
                     return self._reference(original, within)
                 declaring = owned.instance
-                made, kind = self._wire(owned.type, declaring, (), original, indices)
-                _start(made).variable = self._variables[owned]
+                expression, kind = self._wire(owned.type, declaring, (), original, indices)
+                _start(expression).variable = self._variables[owned]
             reached[original] = kind, declaring
-            return made
+            return expression
 
         def translated(original: ex.Expression, operands: list[ex.Expression]) -> ex.Expression:
             if isinstance(original, robosc.Access):
@@ -209,14 +209,14 @@ class NodeExpressions(_Expressions):
                 assert original.enumeration is not None
                 return rosgraph.ErrorReason(enumeration=self._declarations.enumeration(original.enumeration))
             if isinstance(original, robosc.ArrayQuantifier):
-                made = quantifiers.get(original.element) or rosgraph.ArrayQuantifier(
+                quantifier = quantifiers.get(original.element) or rosgraph.ArrayQuantifier(
                     name=names.fresh(original.element.name)
                 )
-                made.quantifier = getattr(rosgraph.Quantifier, str(original.quantifier))
-                array, made.body = operands
+                quantifier.quantifier = getattr(rosgraph.Quantifier, str(original.quantifier))
+                array, quantifier.body = operands
                 assert isinstance(array, rosgraph.WireAccess)
-                made.array = array
-                return made
+                quantifier.array = array
+                return quantifier
             return self._operation(original, operands)
 
         return fold(translated, self._trace.instances.expanded(expression, within))
@@ -227,8 +227,8 @@ class NodeExpressions(_Expressions):
         row = operator_of(original)
         if row is None:
             return type(original)(value=original.value)  # type: ignore[attr-defined,call-arg]
-        mixed = {Rule.ORDERING, Rule.EQUALITY, Rule.ARITHMETIC}
-        if row.rule is Rule.DOUBLE or (row.rule in mixed and self._some(operands, DOUBLE)):
+        mixed = {TypeRule.ORDERING, TypeRule.EQUALITY, TypeRule.ARITHMETIC}
+        if row.rule is TypeRule.DOUBLE or (row.rule in mixed and self._some(operands, DOUBLE)):
             operands = [self.as_double(operand) for operand in operands]
         if row is FUNCTIONS["double"]:
             return operands[0]
@@ -247,9 +247,9 @@ def _no_name(reference: ex.Expression) -> Value:
     raise TypeError(f"{type(reference).__name__} in a constant")
 
 
-def _start(read: ex.Expression) -> rosgraph.WireAccess:
+def _start(reference: ex.Expression) -> rosgraph.WireAccess:
     """Return the access to the data: the expression itself, or the argument of a conversion."""
-    access = read.argument if isinstance(read, rosgraph.ConversionCall) else read
+    access = reference.argument if isinstance(reference, rosgraph.ConversionCall) else reference
     assert isinstance(access, rosgraph.WireAccess)
     return access
 

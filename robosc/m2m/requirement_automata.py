@@ -13,11 +13,11 @@ from robosc.base.diagnostics import Diagnostic, ModelError, Severity
 from robosc.model import expression as ex
 from robosc.model import robosc, sct
 from robosc.model.places import place
-from robosc.model.semantics.communication import meant
+from robosc.model.semantics.communication import port_event_of
 from robosc.model.semantics.expansion import constant_value
 from robosc.model.semantics.instances import MOST
 from robosc.model.semantics.printing import conjunction, disjunction
-from robosc.model.semantics.walks import copied
+from robosc.model.semantics.walks import copy_tree
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -72,7 +72,7 @@ class RequirementAutomaton:
 
     def _event(self, reference: robosc.EventReference) -> sct.Event:
         port = self.trace.instances.port(reference.communicationType, self._within)
-        named = meant(reference)
+        named = port_event_of(reference)
         assert port is not None
         assert named is not None
         return self.trace.event(port, named.kind)
@@ -97,19 +97,19 @@ class RequirementAutomaton:
         most = constant_value(count.bound, self._within)
         if type(most) is not int or not 1 <= most <= MOST:
             raise ModelError([_no_bound(count)])
-        made = sct.DiscreteVariable(
+        counter = sct.DiscreteVariable(
             name="count", type=ex.IntegerType(minimum=0, maximum=most), initial=ex.IntegerLiteral(value=0)
         )
-        self.plant.variables.append(made)
-        so_far = sct.VariableReference(variable=made)
+        self.plant.variables.append(counter)
+        so_far = sct.VariableReference(variable=counter)
         for event in dict.fromkeys([*restricted, anchor]):
-            one_more = ex.Addition(left=sct.VariableReference(variable=made), right=ex.IntegerLiteral(value=1))
+            one_more = ex.Addition(left=sct.VariableReference(variable=counter), right=ex.IntegerLiteral(value=1))
             value = ex.IntegerLiteral(value=0) if event is anchor else one_more
             edge = sct.Edge(event=event, target=counting)
-            edge.updates.append(sct.Update(variable=made, value=value))
+            edge.updates.append(sct.Update(variable=counter, value=value))
             counting.edges.append(edge)
         for event in restricted:
-            so_far = sct.VariableReference(variable=made)
+            so_far = sct.VariableReference(variable=counter)
             self.allowed[event] = ex.LessThan(left=so_far, right=ex.IntegerLiteral(value=most))
 
     def _automaton(self, automaton: robosc.AutomatonRequirement, expressions: SctExpressions) -> None:
@@ -151,9 +151,9 @@ class RequirementAutomaton:
         before: list[ex.Expression] = []
         for number, (transition, target) in enumerate(tried, start=1):
             own = [] if number == len(tried) else [self._guard(transition, expressions)]
-            guard = conjunction([*(ex.Negation(operand=copied(other)) for other in before), *own])
+            guard = conjunction([*(ex.Negation(operand=copy_tree(other)) for other in before), *own])
             location.edges.append(sct.Edge(event=event, guard=guard, target=target, source=transition.source))
-            before += map(copied, own)
+            before += map(copy_tree, own)
         if not tried:
             location.edges.append(sct.Edge(event=event, target=location))
 

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from robosc.base.ros_types import RosTypes
 from robosc.m2m.declarations import Declarations, default_value
-from robosc.m2m.expressions import Carried, NodeExpressions
-from robosc.m2m.kept_types import KeptTypes
+from robosc.m2m.expressions import NodeExpressions, ReceivedValue
+from robosc.m2m.stored_types import StoredTypes
 from robosc.model import expression as ex
 from robosc.model import robosc, rosgraph, sct
 from robosc.model.semantics.communication import (
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from robosc.base.ros_types import Section
     from robosc.m2m.trace import Trace
     from robosc.model.semantics.communication import PortEvent
-    from robosc.model.semantics.inputs import Told
+    from robosc.model.semantics.inputs import InputSource
     from robosc.model.semantics.instances import Instance, InstanceParameter, InstanceVariable, PortInstance
 
 #: Field of a basic value in a type of std_msgs.
@@ -56,10 +56,10 @@ def transform(trace: Trace, interfaces: RosTypes | None = None) -> rosgraph.RosG
     `interfaces` holds the known ROS types. None: the types that are known without extra folders. Topics, services and
     actions are in the order of the text. Messages of one topic and ROS type share one subscription.
     """
-    return _Transformation(trace, interfaces or RosTypes()).run()
+    return _RoboscToRosgraph(trace, interfaces or RosTypes()).run()
 
 
-class _Transformation:
+class _RoboscToRosgraph:
     def __init__(self, trace: Trace, interfaces: RosTypes) -> None:
         self.trace = trace
         self.known = interfaces
@@ -72,14 +72,14 @@ class _Transformation:
         self.conversions: dict[tuple[robosc.EnumDataType, tuple[str, ...]], rosgraph.Conversion] = {}
         self.declarations = Declarations(self.graph, trace.declarations)
         self.conversion_names = Names()
-        self.kept = KeptTypes(self.declarations, self.known)
+        self.stored_types = StoredTypes(self.declarations, self.known)
         self.carriers: dict[rosgraph.Reception, tuple[rosgraph.Interface, Section]] = {}
         self.subscriptions: dict[tuple[str, rosgraph.Interface], rosgraph.Subscription] = {}
         self.publishers: dict[tuple[str, rosgraph.Interface], rosgraph.Publisher] = {}
         self.durations: dict[InstanceParameter, list[sct.Duration]] = {}
         for (place, _), duration in trace.durations.items():
             self.durations.setdefault(place, []).append(duration)
-        self.inputs: dict[tuple[PortInstance, PortEvent], list[tuple[Told, sct.Input]]] = {}
+        self.inputs: dict[tuple[PortInstance, PortEvent], list[tuple[InputSource, sct.Input]]] = {}
         for carried, declared in trace.inputs.items():
             self.inputs.setdefault((carried.port, carried.event), []).append((carried, declared))
         self.expressions = NodeExpressions(trace, self.declarations, self.variables, self.parameters, self.wire)
@@ -160,12 +160,12 @@ class _Transformation:
         client.interface = self.interface(port.communication)
         client.source = port.communication.source
         for event in events(port.communication):
-            made: rosgraph.Sending | rosgraph.Reception | sct.Event = self.trace.event(port, event.kind)
+            handler: rosgraph.Sending | rosgraph.Reception | sct.Event = self.trace.event(port, event.kind)
             if event.is_sent:
-                made = self.sending(port, event)
+                handler = self.sending(port, event)
             elif event.kind not in CONTROLLABLE:
-                made = self.reception(port, event)
-            setattr(client, event.name or event.kind.name, made)
+                handler = self.reception(port, event)
+            setattr(client, event.name or event.kind.name, handler)
         clients: list[ex.Located] = self.graph.actionClients if is_action else self.graph.serviceClients  # type: ignore[assignment]
         clients.append(client)
 
@@ -192,12 +192,12 @@ class _Transformation:
         )
         sent = data_type(port.communication, event)
         assert sent is not None
-        for statement in self.instances.provided(port):
-            given = statement.element
-            alternative = rosgraph.ProvidedData(location=self.trace.provided[statement], source=given.source)
+        for statement in self.instances.provide_statements(port):
+            provided = statement.element
+            alternative = rosgraph.ProvidedData(location=self.trace.provided[statement], source=provided.source)
             is_object = isinstance(declared_type(port.instance.data_type(sent)), ObjectType)
             lone = () if is_object else (self.field(port, event),)
-            for field in self.fields(given.data, statement.within, lone, port.instance.data_type(sent)):
+            for field in self.fields(provided.data, statement.within, lone, port.instance.data_type(sent)):
                 alternative.fields.append(field)
             sending.alternatives.append(alternative)
         return sending
@@ -214,8 +214,10 @@ class _Transformation:
         if isinstance(data, robosc.ObjectValue):
             return [
                 field
-                for given in data.properties
-                for field in self.fields(given.value, within, (*path, given.property.name), given.property.type)
+                for assignment in data.properties
+                for field in self.fields(
+                    assignment.value, within, (*path, assignment.property.name), assignment.property.type
+                )
             ]
         return [
             rosgraph.FieldAssignment(
@@ -227,8 +229,8 @@ class _Transformation:
         ]
 
     def converted(self, value: ex.Expression, within: Instance | None, declared: robosc.DataType) -> ex.Expression:
-        made = self.expressions(value, within)
-        return self.expressions.as_double(made) if isinstance(declared, robosc.DoubleDataType) else made
+        expression = self.expressions(value, within)
+        return self.expressions.as_double(expression) if isinstance(declared, robosc.DoubleDataType) else expression
 
     # Incoming data
 
@@ -243,16 +245,16 @@ class _Transformation:
             value = self.value_of(port, event)
             self.carriers[reception] = self.interface(port.communication), event.section
         for carried, declared in self.inputs.get((port, event), ()):
-            read: ex.Expression
+            access: ex.Expression
             if isinstance(carried, Data):
-                read = robosc.Access(
+                access = robosc.Access(
                     value=True, segments=[robosc.PropertySegment(property=part) for part in carried.path]
                 )
             elif isinstance(carried, FailureReason):
-                read = robosc.ErrorReason(enumeration=carried.enum)
+                access = robosc.ErrorReason(enumeration=carried.enum)
             else:
-                read = carried.expression
-            assigned = self.expressions(read, port.instance, value)
+                access = carried.expression
+            assigned = self.expressions(access, port.instance, value)
             reception.inputs.append(rosgraph.InputAssignment(input=declared, value=assigned))
         return reception
 
@@ -262,12 +264,12 @@ class _Transformation:
         assert event.section is not None
         return _FIELD if linked is None else self.known.field_of_basic(linked.package, linked.type, event.section)
 
-    def value_of(self, port: PortInstance, event: PortEvent) -> Carried:
+    def value_of(self, port: PortInstance, event: PortEvent) -> ReceivedValue:
         """Return the meaning of `value` in a ROS message with the data of an event."""
         carried = data_type(port.communication, event)
         assert carried is not None
         is_object = isinstance(basis(carried), robosc.ComplexDataTypeReference)
-        return Carried(carried, port.instance, () if is_object else (self.field(port, event),))
+        return ReceivedValue(carried, port.instance, () if is_object else (self.field(port, event),))
 
     def wire(
         self,
@@ -284,8 +286,8 @@ class _Transformation:
         if isinstance(enum, robosc.EnumDataType):
             argument = rosgraph.WireAccess(steps=steps, type=self.wire_type(enum.type))
             assert isinstance(reached, robosc.ComplexDataTypeReference)
-            given = bound_arguments(enum.parameters, reached.arguments)
-            arguments = {name: self.argument(value, within) for name, value in given.items()}
+            bound = bound_arguments(enum.parameters, reached.arguments)
+            arguments = {name: self.argument(value, within) for name, value in bound.items()}
             call = rosgraph.ConversionCall(conversion=self.conversion(enum, arguments), argument=argument)
             return call, reached
         return rosgraph.WireAccess(steps=steps, type=self.wire_type(reached)), reached
@@ -324,10 +326,10 @@ class _Transformation:
                 source=enum.source,
             )
             self.conversions[key] = conversion
-            value = Carried(enum.type)
+            value = ReceivedValue(enum.type)
             for rule in enum.rules:
                 if isinstance(rule, robosc.EnumTransformationRule):
-                    condition = self.instances.expanded.argued(rule.condition, arguments)
+                    condition = self.instances.expanded.expand_with(rule.condition, arguments)
                     conversion.rules.append(
                         rosgraph.ConversionRule(
                             condition=self.expressions(condition, None, value),
@@ -359,8 +361,8 @@ class _Transformation:
                     variable = self.variables[owned]
                     if happens_anyway(event) and reads_elements(value):
                         # The assignment does not happen if its value cannot be read.
-                        kept = rosgraph.NodeVariableReference(variable=variable)
-                        value = rosgraph.IfReadable(value=value, otherwise=kept)
+                        unchanged = rosgraph.NodeVariableReference(variable=variable)
+                        value = rosgraph.IfReadable(value=value, otherwise=unchanged)
                     reaction.assignments.append(
                         rosgraph.NodeAssignment(variable=variable, value=value, source=assignment.source)
                     )
@@ -380,8 +382,8 @@ class _Transformation:
         if not isinstance(transition, robosc.ResultTransition):
             return None
         data = self.data(transition, instance)
-        found = [guard for guard in map(guard_of, [*others, transition]) if guard is not None]
-        guards = [self.expressions(guard, instance, data) for guard in found]
+        earlier = [guard for guard in map(guard_of, [*others, transition]) if guard is not None]
+        guards = [self.expressions(guard, instance, data) for guard in earlier]
         if happens_anyway(self.trace.event_of(transition, instance)):
             guards = [_false_if_missing(guard) for guard in guards]
         own = [] if transition.guard is None else [guards.pop()]
@@ -395,9 +397,9 @@ class _Transformation:
                 variable.reception, path = next(iter(places))
                 variable.path.extend(["0" if step == EACH or step.isdigit() else step for step in path])
                 interface, section = self.carriers[variable.reception]
-                variable.type = self.kept.type_of(declared[variable], interface, section, variable.path)
+                variable.type = self.stored_types.type_of(declared[variable], interface, section, variable.path)
 
-    def data(self, transition: robosc.Transition, instance: Instance) -> Carried | None:
+    def data(self, transition: robosc.Transition, instance: Instance) -> ReceivedValue | None:
         """Return the meaning of `value` in a transition. None if its event carries no data."""
         if not isinstance(transition, robosc.ResultTransition):
             return None

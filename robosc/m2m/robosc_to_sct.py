@@ -32,9 +32,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from robosc.model.places import Place
-    from robosc.model.semantics.inputs import Told
+    from robosc.model.semantics.inputs import InputSource
 
-_Stated = TypeVar("_Stated", bound=robosc.StatedDefinition)
+_Definition = TypeVar("_Definition", bound=robosc.StatedDefinition)
 
 #: Events from the robot, or events that must always be possible. A component ignores them in all other states.
 _NEVER_BLOCKED = (
@@ -82,10 +82,10 @@ def transform(robot: robosc.Robot) -> tuple[sct.SupervisoryControlModel, Trace]:
     Plants are in the order of the text, component by component: communication, then behaviour; data plants are last.
     Raises ModelError if a comparison of doubles ranges over too many integers.
     """
-    return _Transformation(robot).run()
+    return _RoboscToSct(robot).run()
 
 
-class _Transformation:
+class _RoboscToSct:
     def __init__(self, robot: robosc.Robot) -> None:
         self.robot = robot
         self.instances = Instances(robot)
@@ -95,9 +95,9 @@ class _Transformation:
         self.expressions = SctExpressions(self.trace)
         self.print = RoboscPrinter()
         self.plant_names = Names()
-        self.told: dict[PortInstance, list[Told]] = {}
+        self.input_sources: dict[PortInstance, list[InputSource]] = {}
         for carried in self.trace.cone.data:
-            self.told.setdefault(carried.port, []).append(carried)
+            self.input_sources.setdefault(carried.port, []).append(carried)
 
     def run(self) -> tuple[sct.SupervisoryControlModel, Trace]:
         # Create referenced elements first: a guard may name any component's state.
@@ -130,12 +130,14 @@ class _Transformation:
         plant.topic = instance.topic(communication)
         self.trace.plants[port] = plant
         self.trace.origins[plant] = communication
-        made: dict[str, sct.Event] = {}
+        events_by_kind: dict[str, sct.Event] = {}
         for row in events(communication):
             event = _event(plant, row.kind.name, row.kind, plant.source)
-            made[row.kind.name] = self.trace.events[port, row.kind.name] = event
+            events_by_kind[row.kind.name] = self.trace.events[port, row.kind.name] = event
         edges = [
-            (origin, made[kind.name], end) for origin, kind, end in _PLANTS[type(communication)] if kind.name in made
+            (origin, events_by_kind[kind.name], end)
+            for origin, kind, end in _PLANTS[type(communication)]
+            if kind.name in events_by_kind
         ]
         names = dict.fromkeys(name for origin, _, end in edges for name in (origin, end))
         first = next(iter(names))
@@ -158,25 +160,25 @@ class _Transformation:
         """Add the inputs of a plant (Algorithm 1) for data in the cone of influence."""
         names = Names()
         computed = 0
-        for carried in self.told.get(port, ()):
-            made = sct.Input()
+        for carried in self.input_sources.get(port, ()):
+            input_element = sct.Input()
             if isinstance(carried, Data):
                 parts = [part.name for part in carried.path]
                 assert carried.type is not None
-                made.type = self.declarations.type(carried.type)
+                input_element.type = self.declarations.type(carried.type)
             elif isinstance(carried, FailureReason):
                 parts = ["reason"]
-                made.type = self.declarations.reason(carried)
-                made.text = RoboscPrinter()(robosc.ErrorReason())
+                input_element.type = self.declarations.reason(carried)
+                input_element.text = RoboscPrinter()(robosc.ErrorReason())
             else:
                 computed += 1
                 parts = [f"c{computed}"]
-                made.type = self.declarations.computed(carried)
-                made.text = carried.text
-            made.name = names.fresh("_".join([f"i_{carried.event.kind.name}", *parts]))
-            plant.inputs.append(made)
-            self.trace.event(port, carried.event.kind).inputs.append(made)
-            self.trace.inputs[carried] = made
+                input_element.type = self.declarations.computed(carried)
+                input_element.text = carried.text
+            input_element.name = names.fresh("_".join([f"i_{carried.event.kind.name}", *parts]))
+            plant.inputs.append(input_element)
+            self.trace.event(port, carried.event.kind).inputs.append(input_element)
+            self.trace.inputs[carried] = input_element
 
     # Behaviour
 
@@ -285,12 +287,12 @@ class _Transformation:
             values = (constant_value(owned.parameter.value, owned.instance), *bounds(owned.parameter, owned.instance))
             numbers = (value for value in values if isinstance(value, int | float))
             length, shortest, longest = (set_milliseconds(number, unit) for number in numbers)
-            made = sct.Duration(
+            duration = sct.Duration(
                 parameter=owned.name, milliseconds=length, shortest=shortest, longest=longest, unit=unit
             )
-            made.source = owned.parameter.source
-            self.trace.durations[owned, unit] = made
-            self.trace.model.durations.append(made)
+            duration.source = owned.parameter.source
+            self.trace.durations[owned, unit] = duration
+            self.trace.model.durations.append(duration)
         return self.trace.durations[owned, unit]
 
     def first(
@@ -306,14 +308,16 @@ class _Transformation:
     def none_of(self, transitions: Sequence[robosc.Transition], instance: Instance) -> ex.Expression | None:
         """Return the condition that no guard of the transitions holds. None if there are no guards."""
         guards = ((guard_of(transition), transition) for transition in transitions)
-        found = [self.expressions(guard, instance, transition) for guard, transition in guards if guard is not None]
-        return conjunction(ex.Negation(operand=guard) for guard in found)
+        conditions = [
+            self.expressions(guard, instance, transition) for guard, transition in guards if guard is not None
+        ]
+        return conjunction(ex.Negation(operand=guard) for guard in conditions)
 
     # Provided data
 
     def data_plant(self, port: PortInstance) -> None:
         """Add the plant that selects provided data (listing 5.4). Its names are stable from run to run."""
-        statements = self.instances.provided(port)
+        statements = self.instances.provide_statements(port)
         if not statements:
             return
         name, origin = f"data_{self.communication_name(port)}", self.trace.plants[port].origin
@@ -373,7 +377,7 @@ class _Transformation:
             event=self.trace.event(port, sct.EventKind.trigger),
             kind=sct.RequirementKind.disables if disables else sct.RequirementKind.needs,
             condition=self.expressions(requirement.condition, within),
-            name=_stated_name(statement),
+            name=_statement_name(statement),
             text=f"{begin} {condition} disables {name}" if disables else f"{begin} {name} needs {condition}",
             source=requirement.source,
         )
@@ -386,13 +390,13 @@ class _Transformation:
         Conditions on the edges need the locations of all automata.
         """
         kinds = (robosc.OrderRequirement, robosc.CountRequirement, robosc.AutomatonRequirement)
-        stated = (
+        statements = (
             statement
             for statement in self.instances.statements(robosc.Requirement)
             if isinstance(statement.element, kinds)
         )
-        for number, statement in enumerate(stated, start=1):
-            name = _stated_name(statement)
+        for number, statement in enumerate(statements, start=1):
+            name = _statement_name(statement)
             plant = self.plant(
                 f"requirement_{name.replace('.', '_') if name else number}",
                 sct.PlantKind.requirement,
@@ -400,9 +404,9 @@ class _Transformation:
                 statement.element.source,
             )
             self.trace.origins[plant] = statement.element
-            made = RequirementAutomaton(self.trace, statement, plant)
-            made.declare()
-            yield made
+            automaton = RequirementAutomaton(self.trace, statement, plant)
+            automaton.declare()
+            yield automaton
 
     def restrictions(self, automaton: RequirementAutomaton) -> None:
         """Add the requirements on the locations of a requirement automaton, one for each event that it restricts."""
@@ -413,14 +417,14 @@ class _Transformation:
                 kind=sct.RequirementKind.needs,
                 condition=condition,
                 automaton=automaton.plant,
-                name=_stated_name(statement),
-                text=f"{self.heading(statement)} {self.said(statement)}",
+                name=_statement_name(statement),
+                text=f"{self.heading(statement)} {self.describe_statement(statement)}",
                 source=statement.element.source,
             )
             self.model.requirements.append(target)
             self.trace.origins[target] = statement.element
 
-    def said(self, statement: Statement[robosc.Requirement]) -> str:
+    def describe_statement(self, statement: Statement[robosc.Requirement]) -> str:
         """Return the text of an order, a count or an automaton."""
         match statement.element:
             case robosc.OrderRequirement() as order:
@@ -434,8 +438,8 @@ class _Transformation:
         return "automaton"
 
     def events_said(self, events: robosc.EventSet, statement: Statement[robosc.Requirement]) -> str:
-        said = [self.event_said(event, statement) for event in events.events]
-        return said[0] if len(said) == 1 else f"{{ {', '.join(said)} }}"
+        texts = [self.event_said(event, statement) for event in events.events]
+        return texts[0] if len(texts) == 1 else f"{{ {', '.join(texts)} }}"
 
     def event_said(self, reference: robosc.EventReference, statement: Statement[robosc.Requirement]) -> str:
         port = self.instances.port(reference.communicationType, statement.within)
@@ -452,7 +456,7 @@ class _Transformation:
         never = invariant.kind == robosc.InvariantKind.never
         target = sct.StateInvariant(
             condition=ex.Negation(operand=condition) if never else condition,
-            name=_stated_name(statement),
+            name=_statement_name(statement),
             text=f"{self.heading(statement)} {invariant.kind.name} {self.print(readable)}",
             source=invariant.source,
         )
@@ -462,28 +466,28 @@ class _Transformation:
     def claim(self, statement: Statement[robosc.Property]) -> None:
         claimed, within = statement.element, statement.within
         condition = self.expressions(claimed.condition, within)
-        said = self.print(self.instances.expanded(claimed.condition, within, readable=True))
-        made: sct.Property
+        text = self.print(self.instances.expanded(claimed.condition, within, readable=True))
+        claim: sct.Property
         if isinstance(claimed, robosc.InvariantProperty):
             never = claimed.kind == robosc.InvariantKind.never
-            made = sct.InvariantProperty(condition=ex.Negation(operand=condition) if never else condition)
-            said = f"{claimed.kind.name} {said}"
+            claim = sct.InvariantProperty(condition=ex.Negation(operand=condition) if never else condition)
+            text = f"{claimed.kind.name} {text}"
         else:
             assert isinstance(claimed, robosc.ReachabilityProperty)
-            made, said = sct.ReachabilityProperty(condition=condition), f"reachable {said}"
+            claim, text = sct.ReachabilityProperty(condition=condition), f"reachable {text}"
             if claimed.premise is not None:
-                made.premise = self.expressions(claimed.premise, within)
-                said += f" from {self.print(self.instances.expanded(claimed.premise, within, readable=True))}"
-        made.name, made.source = _stated_name(statement), claimed.source
-        made.text = f"{self.heading(statement)} {said}"
-        self.model.properties.append(made)
-        self.trace.origins[made] = claimed
+                claim.premise = self.expressions(claimed.premise, within)
+                text += f" from {self.print(self.instances.expanded(claimed.premise, within, readable=True))}"
+        claim.name, claim.source = _statement_name(statement), claimed.source
+        claim.text = f"{self.heading(statement)} {text}"
+        self.model.properties.append(claim)
+        self.trace.origins[claim] = claimed
 
-    def heading(self, statement: Statement[_Stated]) -> str:
+    def heading(self, statement: Statement[_Definition]) -> str:
         """Return the first words of a requirement's or property's text: its name and its own text."""
         text = statement.element.text
-        said = [_stated_name(statement), None if text is None else self.print(ex.StringLiteral(value=text))]
-        named = " ".join(filter(None, said))
+        words = [_statement_name(statement), None if text is None else self.print(ex.StringLiteral(value=text))]
+        named = " ".join(filter(None, words))
         word = "property" if isinstance(statement.element, robosc.Property) else "requirement"
         return f"{word} {named}:" if named else word
 
@@ -515,7 +519,7 @@ class _Transformation:
         return f"{port.instance.name}.{name}" if self.communication_name(port) != name else name
 
 
-def _stated_name(statement: Statement[_Stated]) -> str | None:
+def _statement_name(statement: Statement[_Definition]) -> str | None:
     """Return the name of a requirement or property, with its component if it is inside one."""
     name = statement.element.name
     return f"{statement.within.name}.{name}" if name and statement.within else name

@@ -13,7 +13,7 @@ from robosc.model.semantics.cone_of_influence import LARGEST_TABLE
 from robosc.model.semantics.evaluation import Program, Value, literal
 from robosc.model.semantics.printing import conjunction, disjunction
 from robosc.model.semantics.typing import BOOLEAN, infer
-from robosc.model.semantics.walks import copied, fold, operands, parts, with_operands
+from robosc.model.semantics.walks import copy_tree, fold, operands, parts, with_operands
 
 
 class TooLargeError(Exception):
@@ -66,7 +66,7 @@ def _decided(
 ) -> ex.Expression:
     """Return the part, with a variable in place of each condition."""
     if not isinstance(part, ex.Conditional):
-        return with_operands(part, inside) if inside else copied(part)
+        return with_operands(part, inside) if inside else copy_tree(part)
     variable = sct.DiscreteVariable(name="choice", type=ex.BooleanType())
     choices[variable] = part.condition
     return with_operands(part, [sct.VariableReference(variable=variable), *inside])
@@ -96,22 +96,22 @@ def _condition(table: _Table, references: list[ex.Expression], ranges: list[rang
     for low, high, rest in table.runs:
         inside = _between(references[table.depth], low, high, ranges[table.depth])
         alternatives.append(_all(inside if rest is True else [*inside, _condition(rest, references, ranges)]))
-    found = disjunction(alternatives)
-    assert found is not None
-    return found
+    condition = disjunction(alternatives)
+    assert condition is not None
+    return condition
 
 
 def _between(reference: ex.Expression, low: int, high: int, whole: range) -> list[ex.Expression]:
     """Return `low <= reference <= high`, without bounds that the range implies."""
     if _is_condition(reference):
-        return [copied(reference) if low else ex.Negation(operand=copied(reference))]
+        return [copy_tree(reference) if low else ex.Negation(operand=copy_tree(reference))]
     if low == high:
-        return [ex.Equation(left=copied(reference), right=literal(low))]
+        return [ex.Equation(left=copy_tree(reference), right=literal(low))]
     bounds: list[ex.Expression] = []
     if low > whole[0]:
-        bounds.append(ex.GreaterOrEqual(left=copied(reference), right=literal(low)))
+        bounds.append(ex.GreaterOrEqual(left=copy_tree(reference), right=literal(low)))
     if high < whole[-1]:
-        bounds.append(ex.LessOrEqual(left=copied(reference), right=literal(high)))
+        bounds.append(ex.LessOrEqual(left=copy_tree(reference), right=literal(high)))
     return bounds
 
 
@@ -120,9 +120,9 @@ def _is_condition(reference: ex.Expression) -> bool:
 
 
 def _all(conditions: list[ex.Expression]) -> ex.Expression:
-    found = conjunction(conditions)
-    assert found is not None
-    return found
+    condition = conjunction(conditions)
+    assert condition is not None
+    return condition
 
 
 def _declaration(reference: ex.Expression) -> sct.DiscreteVariable | sct.Input | None:

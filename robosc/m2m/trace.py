@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from robosc.model import expression as ex
     from robosc.model import sct
     from robosc.model.semantics.cone_of_influence import ConeOfInfluence
-    from robosc.model.semantics.inputs import Told
+    from robosc.model.semantics.inputs import InputSource
     from robosc.model.semantics.instances import (
         Instance,
         InstanceParameter,
@@ -34,7 +34,7 @@ class Trace:
     declarations: Declarations
     plants: dict[PortInstance, sct.Plant] = field(default_factory=dict)
     events: dict[tuple[PortInstance, str], sct.Event] = field(default_factory=dict)
-    inputs: dict[Told, sct.Input] = field(default_factory=dict)
+    inputs: dict[InputSource, sct.Input] = field(default_factory=dict)
     behaviours: dict[Instance, sct.Plant] = field(default_factory=dict)
     locations: dict[tuple[Instance, robosc.State], sct.Location] = field(default_factory=dict)
     own: dict[tuple[Instance, robosc.Transition], sct.Event] = field(default_factory=dict)

@@ -95,19 +95,19 @@ class Target:
         """Return the files outside of the target's folder, by POSIX path below the output folder."""
         if self.package is None:
             return {}
-        made = cast("PackageGenerator", self.generator()).interfaces(models, configuration)
-        return {f"{self._folder}/{path}": text for path, text in made.items()}
+        texts = cast("PackageGenerator", self.generator()).interfaces(models, configuration)
+        return {f"{self._folder}/{path}": text for path, text in texts.items()}
 
     def findings(self, models: Models, configuration: Configuration) -> list[Diagnostic]:
         """Return errors that make the target impossible for these models and settings, and warnings."""
-        found = self.generator().preconditions(models, configuration)
+        findings = self.generator().preconditions(models, configuration)
         graph = models.rosgraph
         if not self.needs_graph or graph is None:
-            return found
+            return findings
         names = [topic.topic for topics in (graph.subscriptions, graph.publishers) for topic in topics]
         names += [service.identifier for service in graph.serviceClients]
         names += [action.identifier for action in graph.actionClients]
-        return [*found, *configuration.unknown_names([name.removeprefix("/") for name in names])]
+        return [*findings, *configuration.unknown_names([name.removeprefix("/") for name in names])]
 
     @property
     def tested_ros(self) -> int | None:
@@ -196,11 +196,11 @@ class _Guarded:
     module: Any
 
     def preconditions(self, models: Models, configuration: Configuration) -> list[Diagnostic]:
-        with self.extension.working():
+        with self.extension.report_exceptions():
             return list(self.module.preconditions(models, configuration))
 
     def generate(self, models: Models, configuration: Configuration) -> dict[str, str]:
-        with self.extension.working():
+        with self.extension.report_exceptions():
             files = dict(self.module.generate(models, configuration))
         for path, text in files.items():
             relative = isinstance(path, str) and not PurePosixPath(path).is_absolute() and ".." not in path.split("/")
@@ -212,12 +212,14 @@ class _Guarded:
 def targets() -> dict[str, Target]:
     """Return all targets by name: those of the tool, and those of other installed packages."""
     others = extensions("robosc.targets").values()
-    made = (ExtensionTarget(other.name, other.description, other.name, extension=other) for other in others)
-    return TARGETS | {target.name: target for target in made if target.name not in TARGETS}
+    extension_targets = (
+        ExtensionTarget(other.name, other.description, other.name, extension=other) for other in others
+    )
+    return TARGETS | {target.name: target for target in extension_targets if target.name not in TARGETS}
 
 
 def together() -> AbstractContextManager[None]:
     """Cache the results that several targets share. Models must not change in this context."""
-    from robosc.m2m.remembering import remembered
+    from robosc.m2m.memo import cache_transformations
 
-    return remembered()
+    return cache_transformations()

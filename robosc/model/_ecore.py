@@ -54,10 +54,10 @@ def classes(package: str) -> dict[str, Any]:
 
 
 def _python_class(eclass: EClass) -> Any:
-    made = eclass.python_class
+    python_class = eclass.python_class
     # Models have no observers. To detect this at every change, pyecore would climb to the root recursively.
-    made.notify = _nobody_listens
-    return made
+    python_class.notify = _nobody_listens
+    return python_class
 
 
 def _nobody_listens(_element: Any, _notification: Any) -> None:

@@ -50,12 +50,12 @@ class Place:
 
         `files` are the known files by name. A new file is added to it.
         """
-        found = _PLACE.fullmatch(text)
-        if found is None:
+        match = _PLACE.fullmatch(text)
+        if match is None:
             return None
-        name = found["file"] or file
+        name = match["file"] or file
         known = {} if files is None else files
-        span = Span(*(int(number) for number in found.groups()[1:]))
+        span = Span(*(int(number) for number in match.groups()[1:]))
         return cls(known.setdefault(name, SourceFile(name)) if name else None, span)
 
 
@@ -65,11 +65,11 @@ def place(element: Any) -> tuple[str, Span]:
     An element without a `source` has the place of its nearest container with one. Without any, the file is that of the
     root, or its name, and the span is the first character.
     """
-    found: Place | None = None
+    nearest: Place | None = None
     root = around = element
     while around is not None:
-        found = found or around.source
-        if found is not None and found.file is not None:
-            return found.file.path, found.span
+        nearest = nearest or around.source
+        if nearest is not None and nearest.file is not None:
+            return nearest.file.path, nearest.span
         root, around = around, around.eContainer()
-    return getattr(root, "file", None) or root.name or "model", found.span if found else START
+    return getattr(root, "file", None) or root.name or "model", nearest.span if nearest else START

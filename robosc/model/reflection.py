@@ -12,10 +12,10 @@ from robosc.model._ecore import packages
 @cache
 def features(metaclass: EClass) -> Mapping[str, Any]:
     """Return the attributes and references of a class by name, inherited ones first."""
-    found: dict[str, Any] = {}
+    inherited: dict[str, Any] = {}
     for parent in metaclass.eSuperTypes:
-        found |= features(parent)
-    return found | {feature.name: feature for feature in metaclass.eStructuralFeatures}
+        inherited |= features(parent)
+    return inherited | {feature.name: feature for feature in metaclass.eStructuralFeatures}
 
 
 def is_attribute(feature: Any) -> bool:
@@ -26,8 +26,10 @@ def is_attribute(feature: Any) -> bool:
 @cache
 def _containments(metaclass: EClass) -> Sequence[tuple[str, bool]]:
     """Return the names of the containment references of a class, each with whether it has many values."""
-    found = features(metaclass).items()
-    return [(name, feature.many) for name, feature in found if not is_attribute(feature) and feature.containment]
+    features_by_name = features(metaclass).items()
+    return [
+        (name, feature.many) for name, feature in features_by_name if not is_attribute(feature) and feature.containment
+    ]
 
 
 def contents(element: Any) -> Iterator[tuple[str, Any]]:

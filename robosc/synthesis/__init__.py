@@ -4,7 +4,7 @@
     if synthesis.supervisor is not None:
         model.supervisor = synthesis.supervisor
 
-`solve` also gives its caller the decision diagrams; `encoded` builds those of a model without synthesis.
+`solve` also gives its caller the decision diagrams; `use_encoding` builds those of a model without synthesis.
 `robosc.analysis` explains why a supervisor is empty and reports what is suspicious about one.
 
 The modules, from the lowest up: `bdd` wraps the library of decision diagrams; `order` computes the variable order;
@@ -26,7 +26,7 @@ from robosc.model.places import place
 from robosc.model.semantics.roles import event_name, is_from_cif
 from robosc.synthesis.bdd import Diagrams, with_enough_memory
 from robosc.synthesis.cover import separating_expression
-from robosc.synthesis.encoding import Encoding, Layout
+from robosc.synthesis.encoding import BitLayout, Encoding
 from robosc.synthesis.fixpoint import SupervisedStates, reachable, supervise, supervise_only
 from robosc.synthesis.guards import Permission, permission
 from robosc.synthesis.projection import Projection
@@ -51,9 +51,9 @@ __all__ = [
     "Statistics",
     "Synthesis",
     "count",
-    "encoded",
     "solve",
     "synthesize",
+    "use_encoding",
 ]
 
 #: Default memory limit of the decision diagrams, in bytes.
@@ -101,7 +101,7 @@ class Counts:
 
 
 @dataclass(frozen=True)
-class _Found:
+class _Solution:
     """Result of the fixpoint with its encoding; `uncontrolled` is None if these states are not counted."""
 
     encoding: Encoding
@@ -150,10 +150,10 @@ def count(model: sct.SupervisoryControlModel, *, memory: int = MEMORY, statistic
     For the arguments and errors see `synthesize`.
     """
 
-    def counted(found: _Found) -> Counts:
-        encoding, controlled = found.encoding, found.states.controlled
+    def counted(solution: _Solution) -> Counts:
+        encoding, controlled = solution.encoding, solution.states.controlled
         states = encoding.count(controlled) if controlled.satisfiable() else 0
-        return Counts(_uncontrolled_states(found), states, controlled.node_count())
+        return Counts(_uncontrolled_states(solution), states, controlled.node_count())
 
     return _with_states(model, counted, memory, statistics or Statistics(), supervise_only)
 
@@ -174,16 +174,18 @@ def solve(
     arguments and the errors see `synthesize`.
     """
     statistics = statistics or Statistics()
-    return _with_states(model, lambda found: look(_solved(found, statistics, effort)), memory, statistics, supervise)
+    return _with_states(
+        model, lambda all_states: look(_solved(all_states, statistics, effort)), memory, statistics, supervise
+    )
 
 
-def encoded(model: sct.SupervisoryControlModel, look: Callable[[Encoding], T], memory: int = MEMORY) -> T:
+def use_encoding(model: sct.SupervisoryControlModel, look: Callable[[Encoding], T], memory: int = MEMORY) -> T:
     """Return `look(encoding)` for the decision diagrams of a model, without synthesis.
 
     If the diagrams outgrow their limit, `look` runs again with a larger one. `look` must therefore have no lasting side
     effects. Raises MemoryError if the diagrams take more than `memory` bytes.
     """
-    layout = Layout(model)
+    layout = BitLayout(model)
     return with_enough_memory(
         lambda capacity: look(Encoding(layout, Diagrams(layout.levels, capacity))), memory, layout.levels
     )
@@ -208,7 +210,7 @@ def _refuse_overlapping(relations: Sequence[EventRelation]) -> None:
     A supervisor allows an event, not one of its edges. The edges of a controllable event must therefore exclude each
     other.
     """
-    edges = [edge for relation in relations if relation.event.controllable for edge in relation.overlapping()]
+    edges = [edge for relation in relations if relation.event.controllable for edge in relation.overlapping_edges()]
     if edges:
         raise ModelError(
             [
@@ -226,7 +228,7 @@ def _refuse_overlapping(relations: Sequence[EventRelation]) -> None:
 
 def _with_states(
     model: sct.SupervisoryControlModel,
-    use: Callable[[_Found], T],
+    use: Callable[[_Solution], T],
     memory: int,
     statistics: Statistics,
     supervising: _Supervising,
@@ -234,19 +236,19 @@ def _with_states(
     """Compute the supervised states of a model and return the result of `use`."""
     _refuse_data_of_controllable_events(model)
     with statistics.during(Phase.ORDER):
-        layout = Layout(model)
+        layout = BitLayout(model)
     return with_enough_memory(
-        lambda capacity: use(_found(model, layout, capacity, statistics, supervising)), memory, layout.levels
+        lambda capacity: use(_solve(model, layout, capacity, statistics, supervising)), memory, layout.levels
     )
 
 
-def _found(
+def _solve(
     model: sct.SupervisoryControlModel,
-    layout: Layout,
+    layout: BitLayout,
     capacity: int,
     statistics: Statistics,
     supervising: _Supervising,
-) -> _Found:
+) -> _Solution:
     """Compute the supervised states, with room for `capacity` nodes."""
     statistics.begin_again()
     with statistics.during(Phase.ENCODE):
@@ -260,36 +262,36 @@ def _found(
         if not is_from_cif(model):
             uncontrolled = reachable(diagrams, steps(plant_moves(relations)), encoding.initial, diagrams.true)
         violating = diagrams.any_of(violations(model, relations, encoding).values())
-        return _Found(encoding, relations, supervising(encoding, moves, violating), uncontrolled)
+        return _Solution(encoding, relations, supervising(encoding, moves, violating), uncontrolled)
 
 
-def _uncontrolled_states(found: _Found) -> int | None:
-    return None if found.uncontrolled is None else found.encoding.count_plants(found.uncontrolled)
+def _uncontrolled_states(solution: _Solution) -> int | None:
+    return None if solution.uncontrolled is None else solution.encoding.count_plants(solution.uncontrolled)
 
 
-def _solved(all_found: _Found, statistics: Statistics, effort: int | None) -> Solution:
-    encoding, relations, found = all_found.encoding, all_found.relations, all_found.states
+def _solved(all_found: _Solution, statistics: Statistics, effort: int | None) -> Solution:
+    encoding, relations, fixpoint = all_found.encoding, all_found.relations, all_found.states
     uncontrolled, all_states = all_found.uncontrolled, _uncontrolled_states(all_found)
-    diagrams, nodes = encoding.diagrams, found.controlled.node_count()
-    if not found.controlled.satisfiable():
+    diagrams, nodes = encoding.diagrams, fixpoint.controlled.node_count()
+    if not fixpoint.controlled.satisfiable():
         empty = Synthesis(None, all_states, 0, nodes, statistics)
-        return Solution(empty, encoding, relations, (), found, uncontrolled)
+        return Solution(empty, encoding, relations, (), fixpoint, uncontrolled)
     with statistics.during(Phase.GUARDS):
-        controlled = Projection(found.controlled, encoding)
+        controlled = Projection(fixpoint.controlled, encoding)
         permissions = [
-            permission(relation, controlled, encoding, restricts=len(found.rounds) > 1, effort=effort)
+            permission(relation, controlled, encoding, restricts=len(fixpoint.rounds) > 1, effort=effort)
             for relation in relations
             if relation.event.controllable
         ]
         supervisor = sct.Supervisor(
             uncontrolledStates=all_states,
-            controlledStates=encoding.count(found.controlled),
+            controlledStates=encoding.count(fixpoint.controlled),
             bddNodes=nodes + sum(permission.where.node_count() for permission in permissions),
             guards=[permission.guard for permission in permissions],
         )
-        left_out = encoding.initial & ~found.controlled
+        left_out = encoding.initial & ~fixpoint.controlled
         if left_out.satisfiable():
-            started = encoding.initial & found.controlled
+            started = encoding.initial & fixpoint.controlled
             supervisor.initial = separating_expression(encoding, started, left_out, encoding.layout.state)
         # From a controlled state, an event leads to a controlled state exactly if its guard allows it.
         supervised = [(relation, relation.enabled & relation.requirement, relation.step) for relation in relations]
@@ -300,7 +302,7 @@ def _solved(all_found: _Found, statistics: Statistics, effort: int | None) -> So
         }
         if not unwritten:
             internal = internal_events(supervised, supervisor.guards)
-            supervisor.settlingBound = completion(diagrams, internal, found.controlled, COMPLETION_EFFORT).bound
+            supervisor.settlingBound = completion(diagrams, internal, fixpoint.controlled, COMPLETION_EFFORT).bound
         permitted = {permission.relation.event: permission.where for permission in permissions}
         possible = [
             relation.event
@@ -314,4 +316,4 @@ def _solved(all_found: _Found, statistics: Statistics, effort: int | None) -> So
     synthesis = Synthesis(
         supervisor, all_states, supervisor.controlledStates, supervisor.bddNodes, statistics, tuple(possible), unwritten
     )
-    return Solution(synthesis, encoding, relations, permissions, found, uncontrolled)
+    return Solution(synthesis, encoding, relations, permissions, fixpoint, uncontrolled)

@@ -16,7 +16,7 @@ from robosc.model import sct
 from robosc.model.places import place
 from robosc.synthesis.bdd import and_exists
 from robosc.synthesis.encoding import domain_size
-from robosc.synthesis.relation import Step
+from robosc.synthesis.relation import SymbolicStep
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -34,16 +34,18 @@ _HOPELESS = 1 << 16
 class Acceleration:
     """Closures of few events under any number of steps, each as a single step."""
 
-    def __init__(self, steps: Sequence[Step], *, forwards: bool) -> None:
+    def __init__(self, steps: Sequence[SymbolicStep], *, forwards: bool) -> None:
         self._forwards = forwards
         self._wide: Mapping[Element, Sequence[Element]] = steps[0].encoding.layout.wide if steps else {}
-        self._known: dict[tuple[tuple[Step, ...], Diagram], Step | None] = {}
+        self._known: dict[tuple[tuple[SymbolicStep, ...], Diagram], SymbolicStep | None] = {}
 
     def due(self, turn: int) -> bool:
         """Return whether to try acceleration after this number of turns."""
         return bool(self._wide) and turn >= _PATIENCE and turn.bit_count() == 1
 
-    def over(self, here: Sequence[Step], others: Sequence[Step], turn: int, within: Diagram) -> Iterator[Step]:
+    def over(
+        self, here: Sequence[SymbolicStep], others: Sequence[SymbolicStep], turn: int, within: Diagram
+    ) -> Iterator[SymbolicStep]:
         """Yield closures of steps for each wide integer in reach.
 
         A closure covers the steps that change a wide integer and the steps that these depend on. The steps come from
@@ -59,12 +61,14 @@ class Acceleration:
         for bundle in bundles:
             yield from self._accelerated(near, bundle, within)
         if hops > 1:
-            found: list[Step] = []
+            closures: list[SymbolicStep] = []
             for bundle in list(accumulate(bundles))[1:]:
-                found = list(self._accelerated([*near, *found], bundle, within))
-                yield from found
+                closures = list(self._accelerated([*near, *closures], bundle, within))
+                yield from closures
 
-    def _accelerated(self, near: Sequence[Step], bundle: Sequence[Element], within: Diagram) -> Iterator[Step]:
+    def _accelerated(
+        self, near: Sequence[SymbolicStep], bundle: Sequence[Element], within: Diagram
+    ) -> Iterator[SymbolicStep]:
         """Yield the closure of the steps that change no wide integer outside `bundle`; nothing if it gets large."""
         steps = tuple(
             step for step in near if all(element in bundle for element in step.changed if element in self._wide)
@@ -78,7 +82,7 @@ class Acceleration:
         if accelerated is not None:
             yield accelerated
 
-    def _closed(self, steps: Sequence[Step], within: Diagram) -> Step | None:
+    def _closed(self, steps: Sequence[SymbolicStep], within: Diagram) -> SymbolicStep | None:
         encoding = steps[0].encoding
         changed = tuple(dict.fromkeys(element for step in steps for element in step.changed))
         frame = _Frame(encoding, changed)
@@ -97,7 +101,9 @@ class Acceleration:
             encoding.diagrams.tidy()
             if further == closed:
                 level = min(step.level for step in steps)
-                return Step(level, closed, frame.present_cube, frame.following_cube, frame.same, encoding, changed, ())
+                return SymbolicStep(
+                    level, closed, frame.present_cube, frame.following_cube, frame.same, encoding, changed, ()
+                )
             closed = further
         return None
 
@@ -137,7 +143,7 @@ class _Frame:
         return and_exists(first, second, self._halfway_cube)
 
 
-def hopeless(steps: Iterable[Step]) -> ModelError:
+def hopeless(steps: Iterable[SymbolicStep]) -> ModelError:
     """Return the error for steps that neither end nor can be accelerated, located at their widest integer."""
     variables = [element for step in steps for element in step.touched if isinstance(element, sct.DiscreteVariable)]
     widest = max(variables, key=domain_size)
@@ -149,7 +155,9 @@ def hopeless(steps: Iterable[Step]) -> ModelError:
     return ModelError([Diagnostic(*place(widest), Severity.ERROR, "integer-range", message, hint)])
 
 
-def _with_neighbours(here: Sequence[Step], others: Sequence[Step], hops: int) -> tuple[list[Step], dict[Element, None]]:
+def _with_neighbours(
+    here: Sequence[SymbolicStep], others: Sequence[SymbolicStep], hops: int
+) -> tuple[list[SymbolicStep], dict[Element, None]]:
     """Return the steps with those that change what they touch, up to `hops` times, and all elements they touch."""
     near = list(here)
     touched = dict.fromkeys(element for step in near for element in step.touched)

@@ -86,7 +86,7 @@ def _false(vector: Vector) -> Diagram:
 def _sum(left: Vector, right: Vector, carry: Diagram) -> Vector:
     width = max(len(left), len(right)) + 1
     bits = []
-    for a, b in zip(_extended(left, width), _extended(right, width), strict=True):
+    for a, b in zip(_widen(left, width), _widen(right, width), strict=True):
         either = a ^ b
         bits.append(either ^ carry)
         carry = either.ite(carry, a)
@@ -95,10 +95,10 @@ def _sum(left: Vector, right: Vector, carry: Diagram) -> Vector:
 
 def _aligned(left: Vector, right: Vector) -> tuple[Vector, Vector]:
     width = max(len(left), len(right))
-    return _extended(left, width), _extended(right, width)
+    return _widen(left, width), _widen(right, width)
 
 
-def _extended(vector: Vector, width: int) -> Vector:
+def _widen(vector: Vector, width: int) -> Vector:
     return (*vector, *(vector[-1] for _ in range(width - len(vector))))
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, TypeAlias, cast
 from oxidd.bcdd import BCDDFunction, BCDDManager
 from oxidd.util import BooleanOperator, DDMemoryError
 
-from robosc.synthesis.memory import TooFewAddressesError, address_space, bounded
+from robosc.synthesis.memory import TooFewAddressesError, address_space, limit_memory
 from robosc.synthesis.statistics import Statistics
 
 if TYPE_CHECKING:
@@ -125,10 +125,10 @@ def split(diagram: Diagram, level: int) -> tuple[Diagram, Diagram]:
 
 def _refuse_where_addresses_lack(capacity: int) -> None:
     """Raise TooFewAddressesError if the address space is too small: the library would end the process."""
-    wanted, left = _LIBRARY + capacity * _BYTES_PER_NODE, address_space()
-    if left is not None and left < wanted:
+    needed, left = _LIBRARY + capacity * _BYTES_PER_NODE, address_space()
+    if left is not None and left < needed:
         raise TooFewAddressesError(
-            f"decision diagrams need {wanted >> 20} MiB of addresses, and `ulimit -v` leaves {max(left, 0) >> 20}"
+            f"decision diagrams need {needed >> 20} MiB of addresses, and `ulimit -v` leaves {max(left, 0) >> 20}"
         )
 
 
@@ -147,7 +147,7 @@ def with_enough_memory(run: Callable[[int], T], memory: int, levels: int | None 
     capacity = min(capacity, most)
     while True:
         try:
-            with bounded(memory, "synthesis"):
+            with limit_memory(memory, "synthesis"):
                 return run(capacity)
         except DDMemoryError:
             if capacity == most:

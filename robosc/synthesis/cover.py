@@ -55,11 +55,11 @@ def separating_expression(
 
 
 class _Cover:
-    """Products that cover `wanted` and exclude `spared`, computed one by one."""
+    """Products that cover `required` and exclude `spared`, computed one by one."""
 
-    def __init__(self, encoding: Encoding, wanted: Diagram, spared: Diagram, domains: Sequence[Domain]) -> None:
+    def __init__(self, encoding: Encoding, required: Diagram, spared: Diagram, domains: Sequence[Domain]) -> None:
         self._encoding = encoding
-        self._wanted = wanted
+        self._required = required
         self._spared = spared
         self._cube = encoding.diagrams.cube(level for domain in domains for level in domain.levels)
         self._domains = sorted(domains, key=_telling)
@@ -68,7 +68,7 @@ class _Cover:
 
     def products(self) -> Iterator[Product]:
         """Yield products that cover the wanted states; each covers a state that those before it do not."""
-        left = self._wanted
+        left = self._required
         while left.satisfiable():
             product = self._widened(self._grown(pick(left, self._domains)))
             yield product
@@ -79,13 +79,13 @@ class _Cover:
         behind = [self._encoding.diagrams.false]
         for product in reversed(products):
             behind.append(behind[-1] | self._states(product))
-        kept, covered = [], self._encoding.diagrams.false
+        tidy, covered = [], self._encoding.diagrams.false
         for product, others in zip(products, reversed(behind[:-1]), strict=True):
-            left = self._wanted & ~covered & ~others
+            left = self._required & ~covered & ~others
             if left.satisfiable():
-                kept.append(self._narrowed(product, left))
-                covered |= self._states(kept[-1])
-        return kept
+                tidy.append(self._narrowed(product, left))
+                covered |= self._states(tidy[-1])
+        return tidy
 
     def _narrowed(self, product: Product, states: Diagram) -> Product:
         """Return the product with the most readable values: at least those of `states`, at most its own."""
@@ -98,8 +98,8 @@ class _Cover:
         """Return the product of the state without the elements that are not needed to exclude `spared`."""
         elements = ((domain, domain.element) for domain in self._domains)
         literals = [(domain, self._encoding.has_code(element, state[element])) for domain, element in elements]
-        kept = self._needed(literals, self._spared)
-        return {domain: [(state[domain.element],) * 2] for domain, _ in kept}
+        needed = self._needed(literals, self._spared)
+        return {domain: [(state[domain.element],) * 2] for domain, _ in needed}
 
     def _needed(self, literals: Sequence[_Literal], spared: Diagram) -> list[_Literal]:
         """Return a minimal part of `literals` that excludes all states of `spared`.
@@ -113,8 +113,8 @@ class _Cover:
             return [*literals]
         middle = len(literals) // 2
         first, last = literals[:middle], literals[middle:]
-        kept = self._needed(first, spared & self._all(last))
-        return kept + self._needed(last, spared & self._all(kept))
+        needed = self._needed(first, spared & self._all(last))
+        return needed + self._needed(last, spared & self._all(needed))
 
     def _all(self, literals: Sequence[_Literal]) -> Diagram:
         """Return the conjunction of the literals, from the bottom, so that each step builds only one level."""
@@ -181,21 +181,21 @@ def _shorter_covers(
 
     Returns None if both have more than `most` products.
     """
-    found: tuple[list[Product], list[Product]] = ([], [])
+    covers: tuple[list[Product], list[Product]] = ([], [])
     sources = positive.products(), negative.products()
     done = [False, False]
     while not any(done):
-        if most is not None and len(found[1]) > most:
+        if most is not None and len(covers[1]) > most:
             return None
         for index, source in enumerate(sources):
             product = next(source, None)
             if product is None:
                 done[index] = True
             else:
-                found[index].append(product)
+                covers[index].append(product)
     return (
-        positive.tidied(found[0]) if done[0] else None,
-        negative.tidied(found[1]) if done[1] else None,
+        positive.tidied(covers[0]) if done[0] else None,
+        negative.tidied(covers[1]) if done[1] else None,
     )
 
 

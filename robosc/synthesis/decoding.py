@@ -24,23 +24,23 @@ Value: TypeAlias = bool | int | str
 
 def codes(diagram: Diagram, domain: Domain) -> Ranges:
     """Return the codes for which a function of one domain is true."""
-    found: Ranges = []
-    _collect(diagram, domain.levels, 0, found)
-    return [(first, min(last, domain.size - 1)) for first, last in found if first < domain.size]
+    ranges: Ranges = []
+    _collect(diagram, domain.levels, 0, ranges)
+    return [(first, min(last, domain.size - 1)) for first, last in ranges if first < domain.size]
 
 
-def _collect(diagram: Diagram, levels: Sequence[int], first: int, found: Ranges) -> None:
+def _collect(diagram: Diagram, levels: Sequence[int], first: int, ranges: Ranges) -> None:
     if not diagram.satisfiable():
         return
     if diagram.valid():
         last = first + (1 << len(levels)) - 1
-        if found and found[-1][1] == first - 1:
-            first = found.pop()[0]
-        found.append((first, last))
+        if ranges and ranges[-1][1] == first - 1:
+            first = ranges.pop()[0]
+        ranges.append((first, last))
         return
     high, low = split(diagram, levels[0])
-    _collect(low, levels[1:], first, found)
-    _collect(high, levels[1:], first + (1 << len(levels) - 1), found)
+    _collect(low, levels[1:], first, ranges)
+    _collect(high, levels[1:], first + (1 << len(levels) - 1), ranges)
 
 
 def complement(ranges: Ranges, size: int) -> Ranges:

@@ -71,7 +71,7 @@ class Domain:
     next_levels: tuple[int, ...]
 
 
-class Layout:
+class BitLayout:
     """Static order of a model's domains: the levels of each element.
 
     `wide` maps each wide integer of the state to the integers that its bits are interleaved with, itself included.
@@ -139,7 +139,7 @@ def smallest(element: Element) -> int:
     return domains.domain(element if isinstance(element, sct.Plant) else element.type).low
 
 
-def referenced(expression: ex.Expression | None) -> Iterator[Element]:
+def referenced_elements(expression: ex.Expression | None) -> Iterator[Element]:
     """Yield the elements whose values the expression reads, once per reference."""
     for _, node in tree(expression) if expression is not None else ():
         match node:
@@ -154,7 +154,7 @@ def referenced(expression: ex.Expression | None) -> Iterator[Element]:
 class Encoding:
     """Decision diagrams of a model's elements and expressions."""
 
-    def __init__(self, layout: Layout, diagrams: Diagrams) -> None:
+    def __init__(self, layout: BitLayout, diagrams: Diagrams) -> None:
         self.layout = layout
         self.diagrams = diagrams
         self._model = layout.model
@@ -164,7 +164,7 @@ class Encoding:
         self._between: dict[tuple[Element, int, int], Diagram] = {}
         self._vectors: dict[ex.Expression, Vector] = {}
         self._reads: dict[Element, Vector] = {}
-        self._kept: dict[Element, Diagram] = {}
+        self._unchanged: dict[Element, Diagram] = {}
         self._next: dict[sct.Location, Diagram] = {}
 
     def bits(self, element: Element) -> tuple[Diagram, ...]:
@@ -210,15 +210,15 @@ class Encoding:
 
     def keeps(self, element: Element) -> Diagram:
         """Return the condition that the element keeps its value."""
-        if element not in self._kept:
-            self._kept[element] = self.becomes(element, self.bits(element))
-        return self._kept[element]
+        if element not in self._unchanged:
+            self._unchanged[element] = self.becomes(element, self.bits(element))
+        return self._unchanged[element]
 
     def _same(self, bits: Sequence[Diagram], code: Vector) -> Diagram:
         result = self.diagrams.true
         padded = (*code, *(code[-1] for _ in bits))
-        for bit, wanted in zip(bits, padded, strict=False):
-            result = bit.equiv(wanted) & result
+        for bit, other_bit in zip(bits, padded, strict=False):
+            result = bit.equiv(other_bit) & result
         return result
 
     def location(self, location: sct.Location) -> Diagram:
@@ -426,8 +426,8 @@ def pick(diagram: Diagram, domains: Iterable[Domain]) -> dict[Element, int]:
 
 
 def _plant(element: Element) -> sct.Plant:
-    found: sct.Plant = element if isinstance(element, sct.Plant) else element.eContainer()
-    return found
+    plant: sct.Plant = element if isinstance(element, sct.Plant) else element.eContainer()
+    return plant
 
 
 def _elements(plant: sct.Plant) -> Iterator[Element]:
@@ -446,15 +446,15 @@ def _couplings(model: sct.SupervisoryControlModel, index: Mapping[Element, int])
         for edge in edges_of(plant):
             own = touched.setdefault(edge.event, {})
             own[plant] = None
-            own.update(dict.fromkeys(referenced(edge.guard)))
+            own.update(dict.fromkeys(referenced_elements(edge.guard)))
             for update in edge.updates:
                 own[update.variable] = None
-                own.update(dict.fromkeys(referenced(update.value)))
+                own.update(dict.fromkeys(referenced_elements(update.value)))
     for requirement in model.requirements:
-        touched.setdefault(requirement.event, {}).update(dict.fromkeys(referenced(requirement.condition)))
+        touched.setdefault(requirement.event, {}).update(dict.fromkeys(referenced_elements(requirement.condition)))
     conditions = [invariant.condition for invariant in model.invariants]
     conditions += [*model.initialPredicates, *model.markerPredicates]
-    together = [*touched.values(), *(dict.fromkeys(referenced(condition)) for condition in conditions)]
+    together = [*touched.values(), *(dict.fromkeys(referenced_elements(condition)) for condition in conditions)]
     return [sorted(elements, key=index.__getitem__) for elements in together]
 
 
@@ -473,10 +473,10 @@ def _computations(model: sct.SupervisoryControlModel) -> Iterator[list[Element]]
     inner: set[object] = set()
     for _, node in tree(model):
         if isinstance(node, sct.Update):
-            yield [node.variable, *referenced(node.value)]
+            yield [node.variable, *referenced_elements(node.value)]
         elif isinstance(node, sct.Edge):
-            yield [update.variable for update in node.updates if update.variable in referenced(update.value)]
+            yield [update.variable for update in node.updates if update.variable in referenced_elements(update.value)]
         elif type(node) in _COMPARISON and node not in inner:
             # The outer comparison reads all that the inner ones read, so these are skipped.
             inner.update(operand for _, operand in tree(node) if type(operand) in _COMPARISON)
-            yield list(referenced(node))
+            yield list(referenced_elements(node))

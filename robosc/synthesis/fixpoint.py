@@ -18,7 +18,7 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 
 from robosc.synthesis.acceleration import Acceleration
-from robosc.synthesis.relation import Step, joined
+from robosc.synthesis.relation import SymbolicStep, join_steps
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -75,14 +75,14 @@ class _Firing:
 class _Saturation:
     """Closure of a state set under steps, forwards or backwards, within a bounding set."""
 
-    def __init__(self, diagrams: Diagrams, steps: Sequence[Step], *, forwards: bool) -> None:
+    def __init__(self, diagrams: Diagrams, steps: Sequence[SymbolicStep], *, forwards: bool) -> None:
         self._diagrams = diagrams
         self._acceleration = Acceleration(steps, forwards=forwards)
         by_level = sorted(_merged(steps), key=lambda step: step.level)
         groups = [(level, list(group)) for level, group in groupby(by_level, key=lambda step: step.level)]
         self._levels = [level for level, _ in groups]
         self._groups = [group for _, group in groups]
-        self._follow = Step.image if forwards else Step.preimage
+        self._follow = SymbolicStep.image if forwards else SymbolicStep.preimage
 
     def closure(self, states: Diagram, within: Diagram) -> Diagram:
         """Return the least set that holds `states` and is closed under the steps within the bound.
@@ -187,31 +187,31 @@ def _halves(part: Part, own: int, bound: int) -> tuple[Part, Part]:
     return (high, high_within, group), (low, low_within, group)
 
 
-def _merged(steps: Sequence[Step]) -> list[Step]:
+def _merged(steps: Sequence[SymbolicStep]) -> list[SymbolicStep]:
     """Join some of the steps of each level: most images and preimages add no state.
 
     Only steps that change the element at that level are joined: after one of them, the others start from another place.
     Steps that leave it unchanged can mostly happen side by side. It is best to follow each of them from the result of
     the last.
     """
-    found: list[Step] = []
-    by_level: dict[tuple[int, bool], list[Step]] = {}
+    merged_steps: list[SymbolicStep] = []
+    by_level: dict[tuple[int, bool], list[SymbolicStep]] = {}
     for step in _merged_alike(steps):
         by_level.setdefault((step.level, step.present.node_level() == step.level), []).append(step)
     for (_, at_level), group in by_level.items():
         # Wide integers are accelerated by single events.
-        found += _joined_where_it_pays(group) if at_level and not group[0].encoding.layout.wide else group
-    return found
+        merged_steps += _joined_where_it_pays(group) if at_level and not group[0].encoding.layout.wide else group
+    return merged_steps
 
 
-def _joined_where_it_pays(steps: Sequence[Step]) -> Sequence[Step]:
+def _joined_where_it_pays(steps: Sequence[SymbolicStep]) -> Sequence[SymbolicStep]:
     """Join the steps with a small relation if one of them needs next values.
 
     Steps that are `apart` need no next values, but their join does: each of its images costs more than the separate
     ones.
     """
-    small: list[Step] = []
-    large: list[Step] = []
+    small: list[SymbolicStep] = []
+    large: list[SymbolicStep] = []
     for step in steps:
         (small if step.relation.node_count() <= _LARGE else large).append(step)
     if all(step.apart is not None for step in small):
@@ -219,7 +219,7 @@ def _joined_where_it_pays(steps: Sequence[Step]) -> Sequence[Step]:
     return [*_as_one(small), *large]
 
 
-def _as_one(steps: Sequence[Step]) -> Sequence[Step]:
+def _as_one(steps: Sequence[SymbolicStep]) -> Sequence[SymbolicStep]:
     """Join the steps into one; each part keeps the elements that only the other parts change.
 
     Returns the steps unchanged if the joined relation gets large.
@@ -228,37 +228,37 @@ def _as_one(steps: Sequence[Step]) -> Sequence[Step]:
     parts = steps
     # Join by halves to keep intermediate results small.
     while len(parts) > 1:
-        parts = [reduce(joined, parts[start : start + _PAIR]) for start in range(0, len(parts), _PAIR)]
+        parts = [reduce(join_steps, parts[start : start + _PAIR]) for start in range(0, len(parts), _PAIR)]
         parts[0].encoding.diagrams.tidy()
         if any(part.relation.node_count() > most for part in parts):
             return steps
     return parts
 
 
-def _merged_alike(steps: Sequence[Step]) -> list[Step]:
+def _merged_alike(steps: Sequence[SymbolicStep]) -> list[SymbolicStep]:
     """Merge steps of one level that change the same elements.
 
     A pair of steps without next values is not merged if the result is a large relation with next values.
     """
-    alike: dict[tuple[int, frozenset[Element]], list[Step]] = {}
+    alike: dict[tuple[int, frozenset[Element]], list[SymbolicStep]] = {}
     for step in steps:
         alike.setdefault((step.level, frozenset(step.changed)), []).append(step)
-    found = []
+    merged_steps = []
     for group in alike.values():
         merged = group[0]
         if len(group) > 1:
             merged = replace(merged, relation=merged.encoding.diagrams.any_of(step.relation for step in group))
         pays = len(group) != _PAIR or merged.apart is not None or merged.relation.node_count() <= _SMALL
-        found += [merged] if pays else group
-    return found
+        merged_steps += [merged] if pays else group
+    return merged_steps
 
 
-def reachable(diagrams: Diagrams, steps: Sequence[Step], states: Diagram, within: Diagram) -> Diagram:
+def reachable(diagrams: Diagrams, steps: Sequence[SymbolicStep], states: Diagram, within: Diagram) -> Diagram:
     """Return all states that the steps reach from `states` without leaving `within`."""
     return _Saturation(diagrams, steps, forwards=True).closure(states, within)
 
 
-def coreachable(diagrams: Diagrams, steps: Sequence[Step], states: Diagram, within: Diagram) -> Diagram:
+def coreachable(diagrams: Diagrams, steps: Sequence[SymbolicStep], states: Diagram, within: Diagram) -> Diagram:
     """Return all states from which the steps reach `states` without leaving `within`."""
     return _Saturation(diagrams, steps, forwards=False).closure(states, within)
 
@@ -278,9 +278,9 @@ def supervise(encoding: Encoding, moves: Sequence[Move], violating: Diagram) -> 
     while True:
         statistics.rounds += 1
         statistics.states = encoding.count(good)
-        kept = good & ~violating
+        allowed = good & ~violating
         # If all remaining states were alive, they still are: none needs a removed state to reach a marked one.
-        alive.append(good if alive and good == alive[-1] else coreachable(diagrams, steps, marked & kept, kept))
+        alive.append(good if alive and good == alive[-1] else coreachable(diagrams, steps, marked & allowed, allowed))
         blocked = good & ~alive[-1]
         if not blocked.satisfiable():
             break

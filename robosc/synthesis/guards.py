@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 from robosc.model import expression as ex
 from robosc.model import sct
 from robosc.model.semantics.printing import conjunction
-from robosc.model.semantics.walks import copied
+from robosc.model.semantics.walks import copy_tree
 from robosc.synthesis.cover import separating_expression
-from robosc.synthesis.simplification import simplified
+from robosc.synthesis.simplification import simplify
 
 if TYPE_CHECKING:
     from robosc.synthesis.bdd import Diagram
@@ -62,11 +62,11 @@ def permission(
     allowed = required if step is None else required & step.preimage(states)
     guard = sct.EventGuard(event=relation.event, everEnabled=allowed.satisfiable())
     if enabled != required:
-        asked = conjunction(_condition(requirement) for requirement in relation.requirements)
-        assert asked is not None
-        guard.requirement = simplified(asked, enabled, encoding)
+        condition = conjunction(_condition(requirement) for requirement in relation.requirements)
+        assert condition is not None
+        guard.requirement = simplify(condition, enabled, encoding)
         guard.requirements.extend(
-            requirement for requirement, holds in relation.asked.items() if (enabled & ~holds).satisfiable()
+            requirement for requirement, holds in relation.permissions.items() if (enabled & ~holds).satisfiable()
         )
     if allowed != required:
         guard.synthesis = (
@@ -82,7 +82,7 @@ def permission(
 
 def _condition(requirement: sct.Requirement) -> ex.Expression:
     """Return a copy of the condition that must hold for the event."""
-    condition = copied(requirement.condition)
+    condition = copy_tree(requirement.condition)
     if requirement.kind == sct.RequirementKind.needs:
         return condition
     return condition.operand if isinstance(condition, ex.Negation) else ex.Negation(operand=condition)

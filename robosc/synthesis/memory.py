@@ -29,7 +29,7 @@ class _TooMuchError(MemoryError):
 
 
 @contextmanager
-def bounded(memory: int, what: str) -> Iterator[None]:
+def limit_memory(memory: int, what: str) -> Iterator[None]:
     """Raise MemoryError in the `with` block soon after the whole process takes more bytes than `memory`.
 
     The message names the activity `what`. If the system does not report the memory of a process, nothing is bounded.

@@ -34,11 +34,11 @@ def variable_order(size: int, edges: Sequence[Sequence[int]]) -> list[int]:
     with equal span, the one whose edges lie farther up wins.
     """
     graph = _Hypergraph(size, edges)
-    given, broad = _improved(list(range(size)), graph), _improved(_by_breadth(graph), graph)
-    span, other = graph.span(_places(given)), graph.span(_places(broad))
+    by_index, broad = _improved(list(range(size)), graph), _improved(_by_breadth(graph), graph)
+    span, other = graph.span(_places(by_index)), graph.span(_places(broad))
     if other > _LONGER * span:
-        return given
-    return given if other == span and _weighted_span(broad, graph) >= _weighted_span(given, graph) else broad
+        return by_index
+    return by_index if other == span and _weighted_span(broad, graph) >= _weighted_span(by_index, graph) else broad
 
 
 class _Hypergraph:
@@ -46,8 +46,8 @@ class _Hypergraph:
 
     def __init__(self, size: int, edges: Iterable[Sequence[int]]) -> None:
         """Count the edges; `edges_of` holds the indices of the edges of each vertex."""
-        found = Counter(tuple(edge) for edge in edges if len(edge) > 1)
-        self.edges, self.weights = list(found), list(found.values())
+        multiplicities = Counter(tuple(edge) for edge in edges if len(edge) > 1)
+        self.edges, self.weights = list(multiplicities), list(multiplicities.values())
         self.edges_of: list[list[int]] = [[] for _ in range(size)]
         for index, edge in enumerate(self.edges):
             for vertex in edge:

@@ -10,18 +10,18 @@ from robosc.model import sct
 from robosc.model.semantics.edges import edges_by_event
 from robosc.synthesis import arithmetic
 from robosc.synthesis.bdd import Diagram, and_exists
-from robosc.synthesis.encoding import referenced
+from robosc.synthesis.encoding import referenced_elements
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from robosc.synthesis.encoding import Element, Encoding
 
-    Move = tuple["EventRelation", "Step"]
+    Move = tuple["EventRelation", "SymbolicStep"]
 
 
 @dataclass(frozen=True)
-class Step:
+class SymbolicStep:
     """All moves of an event under a condition. Its inputs are quantified: each of their values may occur.
 
     `relation` is over present and next values. `present` and `following` are the variables of the changed elements.
@@ -68,13 +68,13 @@ class Step:
         return source, and_exists(target, self.same, self.following)
 
 
-def joined(first: Step, second: Step) -> Step:
+def join_steps(first: SymbolicStep, second: SymbolicStep) -> SymbolicStep:
     """Return a step that does one of the two, at the level of the first; neither touches a wide integer."""
 
-    def framed(step: Step) -> Diagram:
+    def framed(step: SymbolicStep) -> Diagram:
         # From the bottom: each conjunction rebuilds the diagram above it.
-        kept = sorted(set(changed) - set(step.changed), key=lambda element: domains[element].levels, reverse=True)
-        return all_of(map(encoding.keeps, kept)) & step.relation
+        unchanged = sorted(set(changed) - set(step.changed), key=lambda element: domains[element].levels, reverse=True)
+        return all_of(map(encoding.keeps, unchanged)) & step.relation
 
     encoding = first.encoding
     all_of, domains = encoding.diagrams.all_of, encoding.layout.domains
@@ -101,7 +101,7 @@ class EventRelation:
     ) -> None:
         """Compute the conditions of the event from its edges, grouped by plant, and its requirements.
 
-        `enabled_by` maps each of these plants to the states in which it enables the event. `asked` maps each
+        `enabled_by` maps each of these plants to the states in which it enables the event. `permissions` maps each
         requirement to the states in which it allows the event.
         """
         self.event = event
@@ -110,15 +110,15 @@ class EventRelation:
         self._edges = edges
         changed = [element for edges in self._edges for element in _changed(edges)]
         self.changed = tuple(element for element in changed if encoding.layout.domains[element].size > 1)
-        self.enabled_by = {edges[0].target.eContainer(): self.taken(edges) for edges in self._edges}
+        self.enabled_by = {edges[0].target.eContainer(): self.states_taking(edges) for edges in self._edges}
         self.enabled = encoding.diagrams.all_of(self.enabled_by.values())
-        self.asked = {requirement: self._permitted(requirement) for requirement in requirements}
-        self.requirement = encoding.diagrams.all_of(self.asked.values())
+        self.permissions = {requirement: self._permitted(requirement) for requirement in requirements}
+        self.requirement = encoding.diagrams.all_of(self.permissions.values())
 
     def _permitted(self, requirement: sct.Requirement) -> Diagram:
         """Return the states in which a requirement allows the event with all inputs for which the plants enable it."""
         permits = self._encoding.permits(requirement)
-        if not any(isinstance(element, sct.Input) for element in referenced(requirement.condition)):
+        if not any(isinstance(element, sct.Input) for element in referenced_elements(requirement.condition)):
             return permits
         encoding, diagrams = self._encoding, self._encoding.diagrams
         happens = diagrams.all_of(
@@ -167,12 +167,12 @@ class EventRelation:
         ]
 
     @cached_property
-    def plant_step(self) -> Step | None:
+    def plant_step(self) -> SymbolicStep | None:
         """Step of the event in the states in which the plants enable it; None if it changes nothing."""
         return self.step_where(self._encoding.diagrams.true)
 
     @cached_property
-    def step(self) -> Step | None:
+    def step(self) -> SymbolicStep | None:
         """Step of the event in the states in which the requirements allow it, too."""
         return self.plant_step if self.requirement.valid() else self.step_where(self.requirement)
 
@@ -181,17 +181,17 @@ class EventRelation:
         """Elements that the plants read or change during the event, or read to enable it."""
         touched = {*self.enabled_by, *self.changed}
         for edge in (edge for edges in self._edges for edge in edges):
-            touched.update(referenced(edge.guard))
+            touched.update(referenced_elements(edge.guard))
             for update in edge.updates:
-                touched.update(referenced(update.value))
+                touched.update(referenced_elements(update.value))
         return frozenset(touched)
 
     @cached_property
     def concerned(self) -> frozenset[Element]:
         """The elements of `touched` and those that the requirements read."""
-        return self.touched.union(*(referenced(requirement.condition) for requirement in self.requirements))
+        return self.touched.union(*(referenced_elements(requirement.condition) for requirement in self.requirements))
 
-    def step_where(self, condition: Diagram) -> Step | None:
+    def step_where(self, condition: Diagram) -> SymbolicStep | None:
         """Return the step of the event under a condition; None if the event changes nothing."""
         if not self.changed:
             return None
@@ -200,7 +200,7 @@ class EventRelation:
         relation = and_exists(self.with_inputs(), condition, self._inputs)
         present = [level for element in self.changed for level in domains[element].levels]
         following = [level for element in self.changed for level in domains[element].next_levels]
-        return Step(
+        return SymbolicStep(
             level=min([*present, *_support_top(relation)]),
             relation=relation,
             present=diagrams.cube(present),
@@ -221,7 +221,7 @@ class EventRelation:
             level for parameter in self.event.inputs for level in domains[parameter].levels
         )
 
-    def taken(self, edges: Sequence[sct.Edge]) -> Diagram:
+    def states_taking(self, edges: Sequence[sct.Edge]) -> Diagram:
         """Return the states in which one of these edges of a plant can be taken with some inputs."""
         encoding = self._encoding
         enabled = encoding.diagrams.any_of(encoding.source(edge) & encoding.holds(edge.guard) for edge in edges)
@@ -229,19 +229,19 @@ class EventRelation:
             return enabled
         return and_exists(enabled, encoding.whole(self.event.inputs), self._inputs)
 
-    def overlapping(self) -> list[sct.Edge]:
+    def overlapping_edges(self) -> list[sct.Edge]:
         """Return the edges that overlap with an earlier edge of the same plant."""
-        found = []
+        overlaps = []
         for edges in self._edges:
             if len(edges) > len({edge.eContainer() for edge in edges}):
                 before = self._encoding.diagrams.false
                 for edge in edges:
                     taken = self._encoding.source(edge) & self._encoding.holds(edge.guard)
-                    taken &= self._encoding.whole(referenced(edge.guard))
+                    taken &= self._encoding.whole(referenced_elements(edge.guard))
                     if (taken & before & self.enabled).satisfiable():
-                        found.append(edge)
+                        overlaps.append(edge)
                     before |= taken
-        return found
+        return overlaps
 
     def _moves(self, edges: Sequence[sct.Edge]) -> Diagram:
         """Return the part of one plant in the relation."""
@@ -281,21 +281,24 @@ def violations(
     These are the states in which an invariant does not hold, and those in which a forbidden uncontrollable event can
     happen.
     """
-    found: dict[sct.StatedRequirement, Diagram] = {
+    violating: dict[sct.StatedRequirement, Diagram] = {
         invariant: ~encoding.holds(invariant.condition) for invariant in model.invariants
     }
     for relation in relations:
         if not relation.event.controllable:
-            found.update((requirement, relation.enabled & ~asked) for requirement, asked in relation.asked.items())
-    return found
+            violating.update(
+                (requirement, relation.enabled & ~permission)
+                for requirement, permission in relation.permissions.items()
+            )
+    return violating
 
 
 def requirements_by_event(requirements: Iterable[sct.Requirement]) -> dict[sct.Event, list[sct.Requirement]]:
     """Return the requirements of each event that has any."""
-    found: dict[sct.Event, list[sct.Requirement]] = {}
+    by_event: dict[sct.Event, list[sct.Requirement]] = {}
     for requirement in requirements:
-        found.setdefault(requirement.event, []).append(requirement)
-    return found
+        by_event.setdefault(requirement.event, []).append(requirement)
+    return by_event
 
 
 def plant_moves(relations: Iterable[EventRelation]) -> list[Move]:
@@ -308,7 +311,7 @@ def required_moves(relations: Iterable[EventRelation]) -> list[Move]:
     return [(relation, relation.step) for relation in relations if relation.step is not None]
 
 
-def steps(moves: Iterable[Move]) -> list[Step]:
+def steps(moves: Iterable[Move]) -> list[SymbolicStep]:
     """Return the steps of the events."""
     return [step for _, step in moves]
 

@@ -7,7 +7,7 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from robosc.model.semantics.roles import SILENT
-from robosc.synthesis.encoding import referenced
+from robosc.synthesis.encoding import referenced_elements
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from robosc.model import sct
     from robosc.synthesis.bdd import Diagram, Diagrams
     from robosc.synthesis.encoding import Element
-    from robosc.synthesis.relation import EventRelation, Step
+    from robosc.synthesis.relation import EventRelation, SymbolicStep
 
 #: Constant cost of examining a step, in nodes, in addition to the nodes of the states.
 _OVERHEAD = 100
@@ -31,7 +31,7 @@ class InternalEvent:
 
     relation: EventRelation
     allowed: Diagram
-    step: Step | None
+    step: SymbolicStep | None
     touched: frozenset[Element]
 
     def before(self, states: Diagram) -> Diagram:
@@ -40,18 +40,18 @@ class InternalEvent:
 
 
 def internal_events(
-    events: Iterable[tuple[EventRelation, Diagram, Step | None]], guards: Iterable[sct.EventGuard]
+    events: Iterable[tuple[EventRelation, Diagram, SymbolicStep | None]], guards: Iterable[sct.EventGuard]
 ) -> list[InternalEvent]:
     """Return the internal events; each of `events` comes with its allowed states and its step."""
     guard_of = {guard.event: guard for guard in guards}
-    found = []
+    internal = []
     for relation, allowed, step in events:
         if relation.event.kind in SILENT:
             guard = guard_of.get(relation.event)
             parts = (guard.requirement, guard.synthesis) if guard else ()
-            read = {element for part in parts for element in referenced(part)}
-            found.append(InternalEvent(relation, allowed, step, relation.touched | read))
-    return found
+            elements = {element for part in parts for element in referenced_elements(part)}
+            internal.append(InternalEvent(relation, allowed, step, relation.touched | elements))
+    return internal
 
 
 @dataclass(frozen=True)
@@ -130,8 +130,8 @@ def independent_groups(events: Sequence[InternalEvent]) -> list[list[InternalEve
         shared = [first(element) for element in event.touched & changed]
         for element in shared:
             known[first(element)] = first(shared[0])
-    found: dict[object, list[InternalEvent]] = {}
+    groups: dict[object, list[InternalEvent]] = {}
     for event in events:
         shared = [first(element) for element in event.touched & changed]
-        found.setdefault(shared[0] if shared else event, []).append(event)
-    return list(found.values())
+        groups.setdefault(shared[0] if shared else event, []).append(event)
+    return list(groups.values())

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.model import expression as ex
-from robosc.model.semantics.walks import copied, walk
+from robosc.model.semantics.walks import copy_tree, walk
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     Part = tuple[ex.Expression, Diagram]
 
 
-def simplified(expression: ex.Expression, states: Diagram, encoding: Encoding) -> ex.Expression:
+def simplify(expression: ex.Expression, states: Diagram, encoding: Encoding) -> ex.Expression:
     """Return a copy of a boolean expression without its redundant parts, equal to it in all of `states`.
 
     Each operand is simplified in the states in which the other operand does not decide the result. Of two equivalent
@@ -55,7 +55,7 @@ def simplified(expression: ex.Expression, states: Diagram, encoding: Encoding) -
                 then = yield whole.then, where & chosen
                 otherwise = yield whole.otherwise, where & ~chosen
                 return ex.Conditional(condition=condition, then=then, otherwise=otherwise, source=whole.source)
-        return copied(whole)
+        return copy_tree(whole)
 
     return walk(step, (expression, states))
 

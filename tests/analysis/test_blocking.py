@@ -6,8 +6,8 @@ from itertools import product
 import pytest
 from hypothesis import assume, given
 
-from robosc.analysis.blocking import Reason
-from robosc.analysis.blocking_in_words import blocking
+from robosc.analysis.blocking import BlockReason
+from robosc.analysis.blocking_in_words import describe_blocking
 from robosc.analysis.paths import Layers, TraceStep
 from robosc.analysis.supervise import diagnose
 from robosc.model import expression as ex
@@ -112,7 +112,7 @@ def test_the_trace_leads_to_the_fault(random_model):
         check_uncontrollable_at_fault(replay, reason)
 
 
-def check_requirement_at_fault(replay: Replay, reason: Reason) -> None:
+def check_requirement_at_fault(replay: Replay, reason: BlockReason) -> None:
     """Check that all is blocked from the start.
 
     The trace ends with an event that a requirement forbids on the way to a marked state.
@@ -128,7 +128,7 @@ def check_requirement_at_fault(replay: Replay, reason: Reason) -> None:
     assert reason.state == replay.names(before)
 
 
-def check_uncontrollable_at_fault(replay: Replay, reason: Reason) -> None:
+def check_uncontrollable_at_fault(replay: Replay, reason: BlockReason) -> None:
     """Check that the trace is a shortest one to its last event, after which no marked state is reachable."""
     oracle = replay.oracle
     before, after = (replay.after(len(reason.trace) - last, requirements=True) for last in (1, 0))
@@ -163,7 +163,7 @@ def tank(**arguments):
 
 def test_an_uncontrollable_event_is_named_with_the_inputs_that_matter():
     reason = diagnose(model([tank()])).reason
-    assert blocking(reason) == (
+    assert describe_blocking(reason) == (
         "response from `Tank` cannot be prevented, and after it no marked state can be reached;"
         " never in a marked state: `Tank` in `burst`"
     )
@@ -191,7 +191,7 @@ def test_a_requirement_that_keeps_everything_from_being_marked_is_named():
         marked=["done"],
     )
     reason = diagnose(model([action], [disables("c_cancel", "A.busy")])).reason
-    assert blocking(reason) == (
+    assert describe_blocking(reason) == (
         "no marked state can be reached: the shortest way to one needs cancel of `A` where a requirement on the"
         " cancel of `A` forbids it; never in a marked state: `A` in `busy`"
     )
@@ -209,7 +209,7 @@ def test_plants_that_reach_no_marked_state_are_named(marked, who, monkeypatch):
     b = plant("B", {"x": [edge("u", to="y")], "y": [edge("v", to="x")]}, marked=["y"])
     synthesis = diagnose(model([a, b]))
     assert (synthesis.uncontrolled_states, synthesis.controlled_states) == (2, 0)
-    assert blocking(synthesis.reason) == f"no marked state can be reached at all; {who}"
+    assert describe_blocking(synthesis.reason) == f"no marked state can be reached at all; {who}"
     assert synthesis.reason.trace == ()
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 import robosc
-from robosc.analysis.explain import Renderer, emptiness, event_named, explored, possibility
+from robosc.analysis.explain import Renderer, emptiness, explore, find_event, possibility
 from robosc.analysis.supervise import EmptySupervisorError, supervise
 from robosc.base.diagnostics import Diagnostic, in_order
 
@@ -113,7 +113,7 @@ def test_the_hint_says_what_to_write_and_to_run() -> None:
 
 def test_the_decisive_requirement_comes_first() -> None:
     model = robosc.to_sct(robosc.load(text=TURNS))
-    found = explored(model, lambda system: possibility(system, event_named(model, "Feed.right")))
+    found = explore(model, lambda system: possibility(system, find_event(model, "Feed.right")))
     assert [loosening.requirements[0].name for loosening in found.loosenings] == ["Safe", "Turn"]
     shown = Renderer(model, lambda _: "").answer(found)
     assert shown.count('requirement Turn "in turns": automaton (') == 1
@@ -137,7 +137,7 @@ def test_a_message_that_its_component_ignores() -> None:
 
 def test_a_guard_of_a_component_is_named() -> None:
     model = robosc.to_sct(robosc.load(text=GUARDED))
-    found = explored(model, emptiness)
+    found = explore(model, emptiness)
     assert [note.details for note in found.stuck if "Mains" in note.text] == [
         ("its transition on response from `Mains.back` requires `Boom.parked`",)
     ]

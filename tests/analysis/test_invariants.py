@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from robosc.analysis.explain.as_text import Renderer
-from robosc.analysis.explain.explaining import emptiness, explored
+from robosc.analysis.explain.explanations import emptiness, explore
 from robosc.analysis.supervise import EmptySupervisorError, supervise
 from robosc.analysis.verify import validate_cif, verify_system
 from robosc.analysis.verify.verdict import Outcome
@@ -171,7 +171,7 @@ def test_an_empty_supervisor_names_the_requirement_and_the_shortest_way(
     assert (
         re.sub(r" \(line \d+\)", "", found.message) == f"the supervisor is empty: {message.format(f'`{requirement}`')}"
     )
-    told = explored(made, lambda system: Renderer(made, lambda _: "").answer(emptiness(system)))
+    told = explore(made, lambda system: Renderer(made, lambda _: "").answer(emptiness(system)))
     assert f"Loosen or remove one of these:\n  : {requirement} (4 states without it)" in told
 
 

@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from robosc.analysis.explain import explain, explored, possibility
+from robosc.analysis.explain import explain, explore, possibility
 from robosc.analysis.supervise import diagnose
 from robosc.analysis.verify import Outcome, verify_system
 from robosc.m2m.sct_to_cif import transform
@@ -48,8 +48,8 @@ def test_long_requirements_take_no_stack(kind: type[ex.BinaryExpression], left: 
 
     def look() -> tuple[int, list[Any], bool, set[Outcome]]:
         made.supervisor = diagnose(made).supervisor
-        explanation = explored(made, lambda system: explain(system, up, {made.plants[0].variables[0]: 6}))
-        possible = explored(made, lambda system: possibility(system, up)).possible
+        explanation = explore(made, lambda system: explain(system, up, {made.plants[0].variables[0]: 6}))
+        possible = explore(made, lambda system: possibility(system, up)).possible
         outcomes = {verdict.outcome for verdict in verify_system(made)}
         transform(made)
         details = [note.details for note in explanation.requirements]

@@ -6,7 +6,7 @@ from click.testing import CliRunner
 
 import robosc
 from robosc.analysis.supervise import supervise
-from robosc.analysis.wording import with_words
+from robosc.analysis.wording import describe_event
 from robosc.language.configuration import Configuration
 from robosc.m2t import cif, supervisor
 from robosc.m2t.models import Models
@@ -48,7 +48,7 @@ def models(folder: Path, text: str = MODEL) -> Models:
 
 def test_what_a_person_reads_for_an_event(tmp_path: Path) -> None:
     events = Roles(models(tmp_path).sct).events
-    assert {event_name(event): with_words(event) for event in events} == {
+    assert {event_name(event): describe_event(event) for event in events} == {
         name: name + words for name, words in TOLD.items()
     }
 

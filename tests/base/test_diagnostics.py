@@ -69,7 +69,7 @@ def test_has_errors() -> None:
 
 def underline(line: str, start: int, end: int) -> tuple[str, str]:
     """Return the printed line and its underline for the code points in [`start`, `end`), counted from 0."""
-    return as_text.underlined(finding(1, start + 1, 1, end + 1), line)
+    return as_text.underline(finding(1, start + 1, 1, end + 1), line)
 
 
 def test_text() -> None:

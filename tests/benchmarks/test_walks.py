@@ -13,7 +13,7 @@ from benchmarks.walk_families import FAMILIES, write
 from robosc.base.diagnostics import Edit, ModelError
 from robosc.language import grammar, recovery
 from robosc.language.checks import check
-from robosc.language.outlining import around, folds, outline
+from robosc.language.document_symbols import around, folds, outline
 from robosc.language.reading import read
 from robosc.language.text import Text
 from robosc.model import sct

@@ -113,7 +113,7 @@ def named_like(text: str, model: sct.SupervisoryControlModel) -> sct.Supervisory
 
     def alike(ours: Iterable[Any], theirs: Iterable[Any]) -> list[tuple[Any, Any]]:
         found = {element.name: element for element in theirs}
-        called = ((mine, names.declared(mine).removeprefix("$")) for mine in ours if mine.name)
+        called = ((mine, names.declared_name(mine).removeprefix("$")) for mine in ours if mine.name)
         return [(mine, found[name]) for mine, name in called if name in found]
 
     pairs = alike(model.enumerations, again.enumerations) + alike(model.plants, again.plants)

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robosc.language.building import Builder
+from robosc.language.builder import Builder
 from robosc.language.grammar import Failure, parse
 from robosc.language.text import Text
 from robosc.model import expression as ex

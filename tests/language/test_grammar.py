@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from robosc.base.files.resources import locate
-from robosc.language.building import element_class
+from robosc.language.builder import element_class
 from robosc.language.grammar import first, first_words, following, is_reserved, language
 from robosc.model import expression as ex
 from robosc.model import robosc as rsc

@@ -46,7 +46,7 @@ def test_new_messages(run_ros2: Runner, monkeypatch: pytest.MonkeyPatch, *, ship
     types = RosTypes().distribution(2)
     differing, known = [], 0
     for package, name, section, field, value in map(json.loads, done.stdout.splitlines()):
-        reached = types.reached(package, name, Section[section], [field])
+        reached = types.type_at(package, name, Section[section], [field])
         match reached and reached[0]:
             case Basic() as basic:
                 initial: object = basic.initial

@@ -11,7 +11,7 @@ from robosc.model.semantics.component_parts import components
 from robosc.model.semantics.edges import edges_from, edges_of
 from robosc.model.semantics.roles import event_name
 from robosc.run.runtime.core.json_text import json_text
-from robosc.run.simulation.tracking import Tracker
+from robosc.run.simulation.tracker import Tracker
 from tests.ros.test_layer import trial
 from tests.ros.workspaces import EXAMPLES, USHER
 
@@ -56,7 +56,7 @@ class Witness:
         """Return the status of a command, as far as the engine determines it."""
         if self.engine.enabled(event_name(event)):
             return "allowed"
-        failing = [str(requirement.text) for requirement in self.engine.failing(event_name(event))]
+        failing = [str(requirement.text) for requirement in self.engine.failing_requirements(event_name(event))]
         if failing:
             return f"forbidden: {'; '.join(failing)}"
         places = [plant.locations[self.engine.location(plant)] for plant in self.model.plants if edges_of(plant, event)]

@@ -12,7 +12,7 @@ from robosc.model.reflection import tree
 from robosc.model.semantics.printing import SctPrinter
 from robosc.synthesis.bdd import Diagrams
 from robosc.synthesis.decoding import codes, complement, cost, is_one_of
-from robosc.synthesis.encoding import Encoding, Layout
+from robosc.synthesis.encoding import BitLayout, Encoding
 from tests.sct_models import edge, model, plant
 from tests.synthesis.oracle import Oracle, values_of
 
@@ -27,7 +27,7 @@ MODEL = model(
     ],
     enumerations={"Colour": ["red", "green", "blue", "black", "white"]},
 )
-LAYOUT = Layout(MODEL)
+LAYOUT = BitLayout(MODEL)
 DOMAINS = {domain.element.name: domain for domain in LAYOUT.state}
 CHOICES = st.sampled_from(sorted(DOMAINS)).flatmap(
     lambda name: st.tuples(st.just(DOMAINS[name]), st.sets(st.integers(0, DOMAINS[name].size - 1), min_size=1))

@@ -10,8 +10,8 @@ import pytest
 from robosc.model import engine, sct
 from robosc.model import expression as ex
 from robosc.model.semantics.evaluation import evaluate
-from robosc.model.semantics.operators import BY_CLASS, FUNCTIONS, Operator, Rule
-from robosc.synthesis import encoded
+from robosc.model.semantics.operators import BY_CLASS, FUNCTIONS, Operator, TypeRule
+from robosc.synthesis import use_encoding
 from tests.sct_models import edge, model, plant
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ def constant(value: int) -> ex.Expression:
 
 def expressions(row: Operator) -> Iterator[ex.Expression]:
     """Return applications of an operator or function to variables and constants of matching types."""
-    names = ("p", "q") if row.rule is Rule.LOGICAL else ("a", "b")
+    names = ("p", "q") if row.rule is TypeRule.LOGICAL else ("a", "b")
     if row.metaclass is sct.Quotient:  # the dividend is not negative
         for divisor in DIVISORS:
             left = ex.Addition(left=reference("a"), right=constant(5))
@@ -64,7 +64,7 @@ def expressions(row: Operator) -> Iterator[ex.Expression]:
         yield row.metaclass(operand=reference(names[0]))
     else:
         yield row.metaclass(left=reference(names[0]), right=reference(names[1]))
-        if row.rule is not Rule.LOGICAL:
+        if row.rule is not TypeRule.LOGICAL:
             yield row.metaclass(left=constant(-2), right=reference("b"))
 
 
@@ -86,7 +86,7 @@ def assert_equal(expression: ex.Expression) -> None:
                 differing.append((given, found, wanted))
         return differing
 
-    assert encoded(MODEL, look) == []
+    assert use_encoding(MODEL, look) == []
 
 
 def value_of(name: str, values: dict[str, int]) -> bool | int:

@@ -2,7 +2,7 @@
 
 import pytest
 
-from robosc.synthesis import encoded, fixpoint, synthesize
+from robosc.synthesis import fixpoint, synthesize, use_encoding
 from robosc.synthesis.relation import event_relations, required_moves, steps
 from tests.sct_models import edge, model, plant
 from tests.synthesis.test_against_oracle import check
@@ -31,7 +31,7 @@ def changed(given):
         merged = fixpoint._merged(steps(required_moves(event_relations(given, encoding))))
         return sorted(sorted(element.name for element in step.changed) for step in merged)
 
-    return encoded(given, look)
+    return use_encoding(given, look)
 
 
 def test_events_that_change_the_same_first_element_are_one_step():

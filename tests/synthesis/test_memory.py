@@ -7,7 +7,7 @@ from time import sleep
 
 import pytest
 
-from robosc.synthesis.memory import bounded, resident
+from robosc.synthesis.memory import limit_memory, resident
 
 ROOT = Path(__file__).parents[2]
 MODEL = ROOT / "examples" / "line_follower" / "line_follower.rscd"
@@ -19,7 +19,7 @@ def test_whoever_takes_the_memory_is_stopped():
     taken = []
 
     def grow():
-        with bounded(1 << 20, "growing"):
+        with limit_memory(1 << 20, "growing"):
             while len(taken) < 4096:
                 taken.append(b"x" * (1 << 20))
                 sleep(0.001)
@@ -29,7 +29,7 @@ def test_whoever_takes_the_memory_is_stopped():
 
 
 def test_nothing_comes_later():
-    with bounded(1 << 40, "nothing"):
+    with limit_memory(1 << 40, "nothing"):
         pass
     assert [number for number in range(100_000)][-1] == 99_999  # noqa: C416  # a loop in which it could come
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from robosc.synthesis import projection
 from robosc.synthesis.bdd import Diagrams
-from robosc.synthesis.encoding import Encoding, Layout
+from robosc.synthesis.encoding import BitLayout, Encoding
 from robosc.synthesis.fixpoint import reachable
 from robosc.synthesis.projection import Projection
 from robosc.synthesis.relation import event_relations
@@ -20,7 +20,7 @@ from tests.searching import examples
 @given(sct_models(), st.data(), st.sampled_from([1, 64]))
 @settings(max_examples=examples(25), deadline=None)
 def test_it_says_of_the_elements_what_the_states_do(model, data, widest):
-    layout = Layout(model)
+    layout = BitLayout(model)
     encoding = Encoding(layout, Diagrams(layout.levels, 1 << 16))
     steps = [relation.plant_step for relation in event_relations(model, encoding) if relation.plant_step is not None]
     states = reachable(encoding.diagrams, steps, encoding.initial, encoding.diagrams.true)

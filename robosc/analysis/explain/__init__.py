@@ -2,15 +2,15 @@
 
     answer = explored(model, lambda system: possibility(system, event_named(model, "move")))
 
-`explaining` computes the answers, `obstacles` finds the obstacles to an event, and `names` resolves the names that a
+`explanations` computes the answers, `obstacles` finds the obstacles to an event, and `names` resolves the names that a
 user writes. Answers (`answers`) are rendered `as_text` for users and `as_json` for programs.
 """
 
 from robosc.analysis.explain.answers import Emptiness, Explanation, Possibility
 from robosc.analysis.explain.as_json import data_of
 from robosc.analysis.explain.as_text import NEEDLESS, Renderer
-from robosc.analysis.explain.explaining import emptiness, explain, explored, possibility
-from robosc.analysis.explain.names import NamingError, event_named, state_given
+from robosc.analysis.explain.explanations import emptiness, explain, explore, possibility
+from robosc.analysis.explain.names import NamingError, find_event, parse_state
 
 __all__ = [
     "NEEDLESS",
@@ -21,9 +21,9 @@ __all__ = [
     "Renderer",
     "data_of",
     "emptiness",
-    "event_named",
     "explain",
-    "explored",
+    "explore",
+    "find_event",
+    "parse_state",
     "possibility",
-    "state_given",
 ]

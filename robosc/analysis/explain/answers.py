@@ -11,7 +11,7 @@ from robosc.engine import Blocked
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from robosc.analysis.blocking import BlockingCounterexample, Reason
+    from robosc.analysis.blocking import BlockingCounterexample, BlockReason
     from robosc.analysis.paths import TraceStep
     from robosc.model import sct
     from robosc.synthesis.decoding import Value
@@ -102,7 +102,7 @@ class Emptiness:
     give a supervisor. None: there would be none even without any requirement.
     """
 
-    reason: Reason
+    reason: BlockReason
     stuck: tuple[Note, ...]
     blamed: tuple[Note, ...]
     loosenings: tuple[Loosening, ...] | None

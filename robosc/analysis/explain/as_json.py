@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from robosc.analysis.blocking_in_words import blocking
+from robosc.analysis.blocking_in_words import describe_blocking
 from robosc.analysis.explain.answers import Emptiness, Explanation, Possibility
 from robosc.analysis.paths import trace_data
 from robosc.analysis.wording import name
@@ -18,67 +18,67 @@ if TYPE_CHECKING:
     At: TypeAlias = Callable[[Any], dict[str, Any]]
 
 
-def data_of(told: Answer | None, at: At) -> dict[str, Any]:
+def data_of(answer: Answer | None, at: At) -> dict[str, Any]:
     """Return the data of an answer; None is the answer for a supervisor that is not empty."""
-    match told:
+    match answer:
         case Explanation():
-            return _explanation(told, at)
+            return _explanation(answer, at)
         case Possibility():
-            return _possibility(told, at)
+            return _possibility(answer, at)
         case Emptiness():
-            return _emptiness(told, at)
+            return _emptiness(answer, at)
     return {"empty": False}
 
 
-def _explanation(told: Explanation, at: At) -> dict[str, Any]:
+def _explanation(explanation: Explanation, at: At) -> dict[str, Any]:
     """Return the data about an event in a state."""
-    counterexample = told.counterexample
+    counterexample = explanation.counterexample
     return {
-        "event": event_name(told.event),
-        "allowed": told.allowed,
-        "by": None if told.by is None else str(told.by),
-        "reach": str(told.situation.reach),
-        "state": dict(told.situation.state),
-        "trace": trace_data(told.situation.trace),
-        "plants": _notes(told.plants, at),
-        "requirements": _notes(told.requirements, at),
+        "event": event_name(explanation.event),
+        "allowed": explanation.allowed,
+        "by": None if explanation.by is None else str(explanation.by),
+        "reach": str(explanation.situation.reach),
+        "state": dict(explanation.situation.state),
+        "trace": trace_data(explanation.situation.trace),
+        "plants": _notes(explanation.plants, at),
+        "requirements": _notes(explanation.requirements, at),
         "counterexample": counterexample
         and {
             "trace": trace_data(counterexample.trace),
             "onwards": trace_data(counterexample.onwards),
             "guards_against": counterexample.onwards[-1].event if counterexample.onwards else None,
             "stuck": [name(plant) for plant in counterexample.unmarked],
-            "requirements": _notes(told.blamed, at),
+            "requirements": _notes(explanation.blamed, at),
         },
-        "changes": _notes(told.changes, at),
-        "way": None if told.way is None else trace_data(told.way),
-        "refusal": told.refusal and _explanation(told.refusal, at),
+        "changes": _notes(explanation.changes, at),
+        "way": None if explanation.way is None else trace_data(explanation.way),
+        "refusal": explanation.refusal and _explanation(explanation.refusal, at),
     }
 
 
-def _possibility(told: Possibility, at: At) -> dict[str, Any]:
+def _possibility(possibility: Possibility, at: At) -> dict[str, Any]:
     """Return the data about an event that may never happen."""
     return {
-        "event": event_name(told.event),
-        "possible": told.possible,
-        "nearest": told.nearest and _explanation(told.nearest, at),
-        "beyond": told.beyond and _explanation(told.beyond, at),
-        "conflict": _notes(told.conflict, at),
-        "plants": _notes(told.plants, at),
-        "loosenings": _loosenings(told.loosenings, at),
+        "event": event_name(possibility.event),
+        "possible": possibility.possible,
+        "nearest": possibility.nearest and _explanation(possibility.nearest, at),
+        "beyond": possibility.beyond and _explanation(possibility.beyond, at),
+        "conflict": _notes(possibility.conflict, at),
+        "plants": _notes(possibility.plants, at),
+        "loosenings": _loosenings(possibility.loosenings, at),
     }
 
 
-def _emptiness(told: Emptiness, at: At) -> dict[str, Any]:
+def _emptiness(emptiness: Emptiness, at: At) -> dict[str, Any]:
     """Return the data about an empty supervisor."""
     return {
         "empty": True,
-        "message": blocking(told.reason),
-        "event": told.reason.event and event_name(told.reason.event),
-        "trace": trace_data(told.reason.trace),
-        "stuck": _notes(told.stuck, at),
-        "requirements": _notes(told.blamed, at),
-        "loosenings": _loosenings(told.loosenings, at),
+        "message": describe_blocking(emptiness.reason),
+        "event": emptiness.reason.event and event_name(emptiness.reason.event),
+        "trace": trace_data(emptiness.reason.trace),
+        "stuck": _notes(emptiness.stuck, at),
+        "requirements": _notes(emptiness.blamed, at),
+        "loosenings": _loosenings(emptiness.loosenings, at),
     }
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeAlias
 
-from robosc.analysis.blocking_in_words import blocking, counterexample_in_words, way_out
+from robosc.analysis.blocking_in_words import counterexample_in_words, describe_blocking, way_out
 from robosc.analysis.explain.answers import Emptiness, Explanation, Possibility, Reach
-from robosc.analysis.system import counted
-from robosc.analysis.wording import in_words, listed, name, what_is, words
+from robosc.analysis.system import format_count
+from robosc.analysis.wording import in_words, join_with_and, name, what_is, words
 from robosc.engine import Blocked
 from robosc.model import sct
 from robosc.model.semantics.roles import Roles, event_name
@@ -35,8 +35,8 @@ NEEDLESS = "only this supervisor forbids it; the robot, the requirements and syn
 _ELSE = "Without requirements, it does after"
 
 
-def _because(told: Explanation) -> str:
-    return NEEDLESS if told.needless else _BY[told.by] if told.by else ""
+def _because(explanation: Explanation) -> str:
+    return NEEDLESS if explanation.needless else _BY[explanation.by] if explanation.by else ""
 
 
 class Renderer:
@@ -47,37 +47,37 @@ class Renderer:
         self._at = at
         self._events = {event_name(event): event for event in Roles(model).events}
 
-    def answer(self, told: Answer | None) -> str:
+    def answer(self, answer: Answer | None) -> str:
         """Return the text of an answer, without a line end; None is the answer for a nonempty supervisor."""
-        match told:
+        match answer:
             case Explanation():
-                lines = self._explained(told)
+                lines = self._explained(answer)
             case Possibility():
-                lines = self._possible(told)
+                lines = self._possible(answer)
             case Emptiness():
-                lines = self._empty(told)
+                lines = self._empty(answer)
             case None:
                 return "The supervisor is not empty."
         return "\n".join(lines)
 
     # An event in a state
 
-    def _explained(self, told: Explanation) -> Iterator[str]:
-        event = words(told.event)
-        if told.allowed:
-            yield f"The {event} can happen here{'' if told.event.controllable else ', and nothing prevents it'}."
-        elif told.by is None:
+    def _explained(self, explanation: Explanation) -> Iterator[str]:
+        event = words(explanation.event)
+        if explanation.allowed:
+            yield f"The {event} can happen here{'' if explanation.event.controllable else ', and nothing prevents it'}."
+        elif explanation.by is None:
             allows = f"Neither the robot nor a requirement forbids the {event} here"
             yield f"{allows}, but the robot never reaches this state."
         else:
-            yield f"The {event} cannot happen here: {_because(told)}."
-        yield from self._situation(told.situation)
-        yield from self._refused(told.refusal)
-        yield from self._obstacles(told)
-        if told.changes:
-            yield from self._section("Events that make it possible at once:", self._notes(told.changes))
-        if told.situation.reach is Reach.SUPERVISED and not told.allowed:
-            yield from self._way(told)
+            yield f"The {event} cannot happen here: {_because(explanation)}."
+        yield from self._situation(explanation.situation)
+        yield from self._refused(explanation.refusal)
+        yield from self._obstacles(explanation)
+        if explanation.changes:
+            yield from self._section("Events that make it possible at once:", self._notes(explanation.changes))
+        if explanation.situation.reach is Reach.SUPERVISED and not explanation.allowed:
+            yield from self._way(explanation)
 
     def _situation(self, situation: Situation) -> Iterator[str]:
         yield ""
@@ -100,15 +100,15 @@ class Renderer:
             elements += plant.variables
             values = [what_is(element, value(element, situation.codes[element])) for element in elements]
             if plant.kind not in _COMMUNICATIONS:
-                yield from [f"  {listed(values)}"] if values else []
+                yield from [f"  {join_with_and(values)}"] if values else []
             elif elements == [plant] and plant.locations[situation.codes[plant]].initial:
                 idle.append((str(plant.locations[situation.codes[plant]].name), f"`{name(plant)}`"))
             elif values:
-                others.append(f"  {listed(values)}")
+                others.append(f"  {join_with_and(values)}")
         yield from others
         for location in dict.fromkeys(location for location, _ in idle):
             names = [plant for where, plant in idle if where == location]
-            yield f"  {listed(names)} {'is' if len(names) == 1 else 'are'} in `{location}`"
+            yield f"  {join_with_and(names)} {'is' if len(names) == 1 else 'are'} in `{location}`"
 
     def _refused(self, refusal: Explanation | None) -> Iterator[str]:
         if refusal is None:
@@ -121,36 +121,39 @@ class Renderer:
         ]
         yield from self._obstacles(refusal)
 
-    def _obstacles(self, told: Explanation) -> Iterator[str]:
-        if told.plants:
-            yield from self._section("The robot:", self._notes(told.plants))
-        if told.requirements:
-            yield from self._section("Requirements:", self._notes(told.requirements))
-        if told.counterexample:
-            lines = [f"{self._at(told.event)}: {counterexample_in_words(told.counterexample, self._model)}"]
-            if told.counterexample.onwards:
-                last = self._events[told.counterexample.onwards[-1].event]
+    def _obstacles(self, explanation: Explanation) -> Iterator[str]:
+        if explanation.plants:
+            yield from self._section("The robot:", self._notes(explanation.plants))
+        if explanation.requirements:
+            yield from self._section("Requirements:", self._notes(explanation.requirements))
+        if explanation.counterexample:
+            lines = [
+                f"{self._at(explanation.event)}: {counterexample_in_words(explanation.counterexample, self._model)}"
+            ]
+            if explanation.counterexample.onwards:
+                last = self._events[explanation.counterexample.onwards[-1].event]
                 lines.append(f"{self._at(last)}: synthesis guards against the {words(last)}")
-            for plant in told.counterexample.unmarked:
-                here = plant.locations[told.counterexample.codes[plant]]
+            for plant in explanation.counterexample.unmarked:
+                here = plant.locations[explanation.counterexample.codes[plant]]
                 lines.append(f"{self._at(here)}: `{name(plant)}` is then in `{here.name}`")
             yield from self._section("If it happened here:", lines)
-            if told.blamed:
-                yield from self._section("Requirements that forbid events from there on:", self._notes(told.blamed))
-            yield from ["", f"To allow it, {way_out(told.counterexample)}."]
+            if explanation.blamed:
+                notes = self._notes(explanation.blamed)
+                yield from self._section("Requirements that forbid events from there on:", notes)
+            yield from ["", f"To allow it, {way_out(explanation.counterexample)}."]
 
-    def _way(self, told: Explanation) -> Iterator[str]:
+    def _way(self, explanation: Explanation) -> Iterator[str]:
         yield ""
-        if told.way is None:
+        if explanation.way is None:
             yield "From here, the robot reaches no state where it can happen."
         else:
-            yield f"A shortest way to a state where it can happen: {self._steps(told.way)}."
+            yield f"A shortest way to a state where it can happen: {self._steps(explanation.way)}."
 
     # An event that may never happen
 
-    def _possible(self, told: Possibility) -> Iterator[str]:
-        event, nearest = words(told.event), told.nearest
-        if told.possible and nearest:
+    def _possible(self, possibility: Possibility) -> Iterator[str]:
+        event, nearest = words(possibility.event), possibility.nearest
+        if possibility.possible and nearest:
             after = self._steps(nearest.situation.trace)
             yield f"The {event} can happen{f', first after {after}' if after else ' from the start'}."
             yield from self._situation(nearest.situation)
@@ -158,20 +161,20 @@ class Renderer:
         yield f"The {event} can never happen."
         if nearest is None:
             yield from self._section(
-                "The robot is never ready for it, with or without requirements:", self._notes(told.plants)
+                "The robot is never ready for it, with or without requirements:", self._notes(possibility.plants)
             )
             return
         yield from ["", *self._nearest(nearest)]
-        if told.beyond:
-            after = self._steps(told.beyond.situation.trace)
+        if possibility.beyond:
+            after = self._steps(possibility.beyond.situation.trace)
             yield from ["", f"The supervised robot reaches no state where they allow it. {_ELSE} {after}:"]
-            yield from self._state(told.beyond.situation)
-            yield from self._refused(told.beyond.refusal)
-        elif told.conflict:
-            all_of = "This allows it in" if len(told.conflict) == 1 else "Together, these allow it in"
-            yield from self._section(f"{all_of} no state that the robot can reach:", self._notes(told.conflict))
+            yield from self._state(possibility.beyond.situation)
+            yield from self._refused(possibility.beyond.refusal)
+        elif possibility.conflict:
+            all_of = "This allows it in" if len(possibility.conflict) == 1 else "Together, these allow it in"
+            yield from self._section(f"{all_of} no state that the robot can reach:", self._notes(possibility.conflict))
         if not nearest.needless:
-            yield from self._loosened(told.loosenings)
+            yield from self._loosened(possibility.loosenings)
 
     def _nearest(self, nearest: Explanation) -> Iterator[str]:
         after = self._steps(nearest.situation.trace)
@@ -190,18 +193,19 @@ class Renderer:
 
     # No supervisor
 
-    def _empty(self, told: Emptiness) -> Iterator[str]:
-        yield f"The supervisor is empty: {blocking(told.reason)}."
-        if told.reason.trace:
+    def _empty(self, emptiness: Emptiness) -> Iterator[str]:
+        yield f"The supervisor is empty: {describe_blocking(emptiness.reason)}."
+        if emptiness.reason.trace:
             steps = [
-                f"{self._at(self._events[step.event])}: {in_words([step], self._model)}" for step in told.reason.trace
+                f"{self._at(self._events[step.event])}: {in_words([step], self._model)}"
+                for step in emptiness.reason.trace
             ]
             yield from self._section("A shortest trace:", steps)
-        if told.stuck:
-            yield from self._section("The state at its end:", self._notes(told.stuck))
-        if told.blamed:
-            yield from self._section("Requirements that forbid events from there on:", self._notes(told.blamed))
-        yield from self._loosened(told.loosenings)
+        if emptiness.stuck:
+            yield from self._section("The state at its end:", self._notes(emptiness.stuck))
+        if emptiness.blamed:
+            yield from self._section("Requirements that forbid events from there on:", self._notes(emptiness.blamed))
+        yield from self._loosened(emptiness.loosenings)
 
     # Shared parts
 
@@ -214,8 +218,8 @@ class Renderer:
             lines = []
             for loosening in loosenings:
                 first = loosening.requirements[0]
-                text = listed(list(dict.fromkeys(own.text or "a requirement" for own in loosening.requirements)))
-                lines.append(f"{self._at(first)}: {text} ({counted(loosening.states, 'state')} without it)")
+                text = join_with_and(list(dict.fromkeys(own.text or "a requirement" for own in loosening.requirements)))
+                lines.append(f"{self._at(first)}: {text} ({format_count(loosening.states, 'state')} without it)")
             yield from self._section("Loosen or remove one of these:", lines)
 
     def _notes(self, notes: Iterable[Note]) -> Iterator[str]:

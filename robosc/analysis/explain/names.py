@@ -35,7 +35,7 @@ class NamingError(ValueError):
         self.hint = hint
 
 
-def event_named(model: sct.SupervisoryControlModel, name: str) -> sct.Event:
+def find_event(model: sct.SupervisoryControlModel, name: str) -> sct.Event:
     """Return the event of a name.
 
     Examples of names are `message_move.c_trigger`, `move`, `Platform.move`, `drive.cancel` and `cancel from drive`.
@@ -47,11 +47,11 @@ def event_named(model: sct.SupervisoryControlModel, name: str) -> sct.Event:
             meant.setdefault(known_as, []).append(event)
     if words := _IN_WORDS.fullmatch(name.strip()):
         name = f"{words[2]}.{words[1]}"
-    found = [event for event in meant.get(name, ()) if event_name(event) == name] or meant.get(name, [])
-    if len(found) == 1:
-        return found[0]
-    if found:
-        listed = ", ".join(f"`{plant_of(event).origin or event_name(event)}`" for event in found)
+    matches = [event for event in meant.get(name, ()) if event_name(event) == name] or meant.get(name, [])
+    if len(matches) == 1:
+        return matches[0]
+    if matches:
+        listed = ", ".join(f"`{plant_of(event).origin or event_name(event)}`" for event in matches)
         raise NamingError(f"`{name}` can be several events", f"say which: {listed}")
     raise NamingError(f"there is no event `{name}`", _close(name, meant, "`robosc synthesize --json` lists the events"))
 
@@ -79,7 +79,7 @@ def _plant_names(plant: sct.Plant) -> list[str]:
     return [plant.origin, plant.origin.rpartition(".")[2]] if plant.origin else []
 
 
-def state_given(model: sct.SupervisoryControlModel, given: str) -> dict[Element, int]:
+def parse_state(model: sct.SupervisoryControlModel, text: str) -> dict[Element, int]:
     """Return the codes of the elements that a state names.
 
     The state is text such as `Door=open,Gauge.level=3`, JSON as `robosc simulate` prints it, or a message that a node
@@ -88,15 +88,15 @@ def state_given(model: sct.SupervisoryControlModel, given: str) -> dict[Element,
     """
     elements = _elements(model)
     codes: dict[Element, int] = {}
-    for name, chosen in _pairs(model, _echoed(given)):
-        found = elements.get(name, [])
-        if not found:
+    for name, chosen in _pairs(model, _echoed(text)):
+        matches = elements.get(name, [])
+        if not matches:
             raise NamingError(f"the state has no `{name}`", _close(name, elements, ""))
-        if len(found) > 1:
-            listed = ", ".join(f"`{_whole_name(element)}`" for element in found)
+        if len(matches) > 1:
+            listed = ", ".join(f"`{_whole_name(element)}`" for element in matches)
             raise NamingError(f"`{name}` can be several parts of the state", f"say which: {listed}")
-        code = _code(found[0], chosen, name)
-        if codes.setdefault(found[0], code) != code:
+        code = _code(matches[0], chosen, name)
+        if codes.setdefault(matches[0], code) != code:
             raise NamingError(f"the state has two values for `{name}`", "leave one out")
     return codes
 
@@ -124,12 +124,12 @@ def _elements(model: sct.SupervisoryControlModel) -> dict[str, list[Element]]:
     return short | exact
 
 
-def _echoed(given: str) -> str:
+def _echoed(output: str) -> str:
     """Return the data of the last `std_msgs/String` in the output of `ros2 topic echo` or `rostopic echo`.
 
     Other text is returned unchanged.
     """
-    printed = [document.strip() for document in re.split(r"^---\s*$", given, flags=re.MULTILINE)]
+    printed = [document.strip() for document in re.split(r"^---\s*$", output, flags=re.MULTILINE)]
     last = next((document for document in reversed(printed) if document), "")
     if last.startswith("data:"):
         last = last.removeprefix("data:").strip()
@@ -143,20 +143,20 @@ def _echoed(given: str) -> str:
     return last
 
 
-def _pairs(model: sct.SupervisoryControlModel, given: str) -> list[tuple[str, Any]]:
-    if given.startswith("{"):
+def _pairs(model: sct.SupervisoryControlModel, text: str) -> list[tuple[str, Any]]:
+    if text.startswith("{"):
         try:
-            read = json_value(given)
+            values = json_value(text)
         except JsonError as error:
             raise NamingError("the state cannot be read", f"{error} (character {error.position + 1})") from None
-        if isinstance(read.get("components"), dict):
-            return list(_reported(model, read))
-        inner = read.get("state", read)
-        return list((inner if isinstance(inner, dict) else read).items())
-    if ";" in given:
-        raise NamingError("a state has no `;`", f"separate its parts by commas: `{given.replace(';', ',')}`")
+        if isinstance(values.get("components"), dict):
+            return list(_reported(model, values))
+        inner = values.get("state", values)
+        return list((inner if isinstance(inner, dict) else values).items())
+    if ";" in text:
+        raise NamingError("a state has no `;`", f"separate its parts by commas: `{text.replace(';', ',')}`")
     pairs = []
-    for pair in given.split(","):
+    for pair in text.split(","):
         name, equals, chosen = pair.partition("=")
         if not equals:
             raise NamingError(
@@ -185,23 +185,23 @@ def _reported(model: sct.SupervisoryControlModel, report: Mapping[str, Any]) -> 
         )
 
 
-def _code(element: Element, given: Any, name: str) -> int:
+def _code(element: Element, raw: Any, name: str) -> int:
     """Return the code of a value, which is given directly or as text."""
     size = domain_size(element)
     if not isinstance(element, sct.Plant) and isinstance(element.type, ex.IntegerType):
         last = smallest(element) + size - 1
         try:
-            number = int(given) if isinstance(given, str) else given
+            number = int(raw) if isinstance(raw, str) else raw
         except ValueError:
             number = None
         if isinstance(number, int) and not isinstance(number, bool) and smallest(element) <= number <= last:
             return number - smallest(element)
-        raise NamingError(f"`{name}` cannot be `{given}`", f"it is an integer from {smallest(element)} to {last}")
+        raise NamingError(f"`{name}` cannot be `{raw}`", f"it is an integer from {smallest(element)} to {last}")
     values = {text(value(element, code)): code for code in range(size)}
-    said = text(given) if isinstance(given, (bool, int, str)) else ""
-    if said in values:
-        return values[said]
-    raise NamingError(f"`{name}` cannot be `{given}`", _close(said, values, f"it is one of {', '.join(values)}"))
+    shown = text(raw) if isinstance(raw, (bool, int, str)) else ""
+    if shown in values:
+        return values[shown]
+    raise NamingError(f"`{name}` cannot be `{raw}`", _close(shown, values, f"it is one of {', '.join(values)}"))
 
 
 def _close(name: str, known: Iterable[str], otherwise: str) -> str:

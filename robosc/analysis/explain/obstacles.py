@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 
 from robosc.analysis.explain.answers import Note
 from robosc.analysis.paths import Path, trace
-from robosc.analysis.wording import in_words, listed, name, what_is, words
+from robosc.analysis.wording import in_words, join_with_and, name, what_is, words
 from robosc.model import expression as ex
 from robosc.model import sct
 from robosc.model.semantics.communication import CANCELING, ERROR, EXECUTING, IDLE, READY, WAITING
 from robosc.model.semantics.edges import edges_from
 from robosc.model.semantics.printing import RobotPrinter, disjunction
-from robosc.model.semantics.walks import copied
+from robosc.model.semantics.walks import copy_tree
 from robosc.synthesis.decoding import text, value
-from robosc.synthesis.encoding import pick, referenced
+from robosc.synthesis.encoding import pick, referenced_elements
 
 if TYPE_CHECKING:
     from robosc.analysis.paths import Move
@@ -69,9 +69,9 @@ class Obstacles:
             Note(
                 requirement,
                 requirement.text or "a requirement forbids it",
-                tuple(dict.fromkeys(map(self._said, self._parts(requirement)))),
+                tuple(dict.fromkeys(map(self._describe, self._parts(requirement)))),
             )
-            for requirement, where in relation.asked.items()
+            for requirement, where in relation.permissions.items()
             if not self._system.is_in(self._codes, where)
         ]
 
@@ -82,13 +82,13 @@ class Obstacles:
         """
         encoding = self._system.encoding
         here = encoding.state(self._codes)
-        found: list[Note] = []
+        notes: list[Note] = []
         for move in self._system.supervised_moves:
             possible = move[1].image(here) & allowed
             if possible.satisfiable():
                 after = pick(possible, encoding.layout.state)
-                found += self._changing(move, after)
-        return found
+                notes += self._changing(move, after)
+        return notes
 
     # Plants
 
@@ -101,17 +101,17 @@ class Obstacles:
     def _guard(self, plant: sct.Plant) -> ex.Expression | None:
         """Return the guards of the plant's edges for the event here; None if one edge has no guard."""
         guards = [edge.guard for edge in self._edges(plant)]
-        return None if None in guards else disjunction(copied(guard) for guard in guards if guard is not None)
+        return None if None in guards else disjunction(copy_tree(guard) for guard in guards if guard is not None)
 
     def _plant(self, plant: sct.Plant) -> Note:
         here = self._here(plant)
         guard = self._guard(plant)
         if guard is not None:
-            parts = tuple(dict.fromkeys(map(self._said, self._failing(guard, wanted=True))))
-            asked = f"{self._transition(plant)} requires `{self._print(guard)}`"
+            parts = tuple(dict.fromkeys(map(self._describe, self._failing(guard, value=True))))
+            condition_text = f"{self._transition(plant)} requires `{self._print(guard)}`"
             if plant.kind == sct.PlantKind.data:
-                return Note(self._event, asked, parts)
-            return Note(self._edges(plant)[0], f"`{name(plant)}` is in `{here.name}`, where {asked}", parts)
+                return Note(self._event, condition_text, parts)
+            return Note(self._edges(plant)[0], f"`{name(plant)}` is in `{here.name}`, where {condition_text}", parts)
         if plant.kind in _CALLS and here.name in _PHASES:
             return Note(plant, f"`{name(plant)}` is in `{here.name}`: it {_PHASES[here.name]}")
         others = [
@@ -120,7 +120,9 @@ class Obstacles:
             if any(own.event is self._event for own in edges_from(location))
         ]
         elsewhere = (
-            f"it has one in {listed(others)}" if len(others) <= _NAMED else f"{len(others)} other states have one"
+            f"it has one in {join_with_and(others)}"
+            if len(others) <= _NAMED
+            else f"{len(others)} other states have one"
         )
         return Note(here, f"`{name(plant)}` is in `{here.name}`, without {self._transition(plant)}: {elsewhere}")
 
@@ -137,12 +139,12 @@ class Obstacles:
     # Conditions
 
     def _parts(self, requirement: sct.Requirement) -> list[tuple[ex.Expression, bool]]:
-        return self._failing(requirement.condition, wanted=requirement.kind == sct.RequirementKind.needs)
+        return self._failing(requirement.condition, value=requirement.kind == sct.RequirementKind.needs)
 
-    def _failing(self, condition: ex.Expression | None, *, wanted: bool) -> list[tuple[ex.Expression, bool]]:
+    def _failing(self, condition: ex.Expression | None, *, value: bool) -> list[tuple[ex.Expression, bool]]:
         """Return the smallest parts of a condition that would all have to change, each with its required value."""
         failing = []
-        pending = [] if condition is None else [(condition, wanted)]
+        pending = [] if condition is None else [(condition, value)]
         while pending:
             part, value_wanted = pending.pop()
             if self._system.holds(part, self._codes) == value_wanted:
@@ -156,14 +158,15 @@ class Obstacles:
                     failing.append((part, value_wanted))
         return failing
 
-    def _said(self, part: tuple[ex.Expression, bool]) -> str:
-        condition, wanted = part
-        held = f"`{self._print(condition)}` {'does not hold' if wanted else 'holds'}"
-        told = not (isinstance(condition, sct.LocationReference) and not wanted)
+    def _describe(self, part: tuple[ex.Expression, bool]) -> str:
+        condition, required = part
+        sentence = f"`{self._print(condition)}` {'does not hold' if required else 'holds'}"
+        has_values = not (isinstance(condition, sct.LocationReference) and not required)
         values = [
-            what_is(element, value(element, self._codes[element])) for element in dict.fromkeys(referenced(condition))
+            what_is(element, value(element, self._codes[element]))
+            for element in dict.fromkeys(referenced_elements(condition))
         ]
-        return f"{held}: {listed(values)}" if values and told else held
+        return f"{sentence}: {join_with_and(values)}" if values and has_values else sentence
 
     # Changes
 
@@ -172,27 +175,29 @@ class Obstacles:
         relation = move[0]
         steps = trace(self._system.encoding, Path([dict(self._codes), dict(after)], [move]))
         by = in_words(steps, self._system.model)
-        found = []
+        changes = []
         for plant in relation.enabled_by:
             possible = edges_from(self._here(plant), relation.event)
             reached = plant.locations[after[plant]]
             edge = next((edge for edge in possible if edge.target is reached), possible[0])
             changed = [element for element in (plant, *plant.variables) if self._codes[element] != after[element]]
-            found += [(element, _change(element, edge, self._here(plant), after, by)) for element in changed]
-        return [note for element, note in found if element in self._in_the_way] or [note for _, note in found]
+            changes += [(element, _change(element, edge, self._here(plant), after, by)) for element in changed]
+        return [note for element, note in changes if element in self._in_the_way] or [note for _, note in changes]
 
     @cached_property
     def _in_the_way(self) -> set[Element]:
         """Plants that cannot take part, and the elements that the false guards and requirements read."""
-        found: set[Element] = set()
+        elements: set[Element] = set()
         relation = self._system.relations[self._event]
         for plant, where in relation.enabled_by.items():
             if not self._system.is_in(self._codes, where):
-                found.update(referenced(self._guard(plant)) if self._edges(plant) else [plant])
-        for requirement, where in relation.asked.items():
+                elements.update(referenced_elements(self._guard(plant)) if self._edges(plant) else [plant])
+        for requirement, where in relation.permissions.items():
             if not self._system.is_in(self._codes, where):
-                found.update(element for part, _ in self._parts(requirement) for element in referenced(part))
-        return found
+                elements.update(
+                    element for part, _ in self._parts(requirement) for element in referenced_elements(part)
+                )
+        return elements
 
 
 def _change(element: Element, edge: sct.Edge, here: sct.Location, after: Codes, by: str) -> Note:

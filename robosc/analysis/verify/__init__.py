@@ -23,10 +23,10 @@ from robosc.analysis.verify.controller_reading import validate_controller
 from robosc.analysis.verify.loop_exploration import LoopEffort
 from robosc.analysis.verify.model_reading import validate_model
 from robosc.analysis.verify.properties import properties
-from robosc.analysis.verify.verdict import Outcome, Verdict, timed
+from robosc.analysis.verify.verdict import Outcome, Verdict, measure
 from robosc.m2t import cif, supervisor
 from robosc.model.semantics.roles import is_from_cif
-from robosc.synthesis import MEMORY, encoded
+from robosc.synthesis import MEMORY, use_encoding
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -65,13 +65,13 @@ def verify(
     4 GB.
     """
     begin(model_reading.PROPERTY)
-    read = timed(validate_model, models.robosc, models.sct)
+    reading = measure(validate_model, models.robosc, models.sct)
     begin(controller_reading.PROPERTY)
-    controllers = [] if is_from_cif(models.sct) else [timed(validate_controller, models)]
+    controllers = [] if is_from_cif(models.sct) else [measure(validate_controller, models)]
     begin("properties")
     system = verify_system(models.sct)
     begin("generated C and CIF")
-    return [*system, read, *controllers, *validate(models, configuration)]
+    return [*system, reading, *controllers, *validate(models, configuration)]
 
 
 def verify_system(model: sct.SupervisoryControlModel, *, memory: int = MEMORY) -> list[Verdict]:
@@ -82,9 +82,9 @@ def verify_system(model: sct.SupervisoryControlModel, *, memory: int = MEMORY) -
     """
 
     def look(encoding: Encoding) -> list[Verdict]:
-        return [timed(examine) for examine in properties(GuardedSystem(model, encoding))]
+        return [measure(examine) for examine in properties(GuardedSystem(model, encoding))]
 
-    return encoded(model, look, memory)
+    return use_encoding(model, look, memory)
 
 
 def validate(models: Models, configuration: Configuration) -> list[Verdict]:
@@ -94,7 +94,7 @@ def validate(models: Models, configuration: Configuration) -> list[Verdict]:
     """
     targets: list[tuple[Sequence[str], Any, Callable[..., list[Verdict]]]] = [
         (c_validation.PROPERTIES[: 1 if is_from_cif(models.sct) else None], supervisor, validate_generated_c),
-        ((cif_extension_validation.PROPERTY,), cif, lambda *generated: [timed(validate_cif, *generated)]),
+        ((cif_extension_validation.PROPERTY,), cif, lambda *generated: [measure(validate_cif, *generated)]),
     ]
     verdicts = []
     for questions, target, examine in targets:

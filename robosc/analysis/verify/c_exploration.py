@@ -6,16 +6,16 @@ from dataclasses import dataclass
 from math import prod
 from typing import TYPE_CHECKING
 
-from robosc.analysis.system import GuardedSystem, counted
+from robosc.analysis.system import GuardedSystem, format_count
 from robosc.analysis.verify.c_program import TEXT, CProgram
-from robosc.analysis.verify.differences import different, event_in_words, on_one_side, refuted, where
+from robosc.analysis.verify.differences import different, event_in_words, on_one_side, refute, where
 from robosc.analysis.verify.transitions import AmbiguityError, of_system
 from robosc.analysis.verify.verdict import Outcome, Verdict
 from robosc.model.semantics.roles import event_name
 from robosc.model.semantics.start import first_state
 from robosc.synthesis import MEMORY
 from robosc.synthesis.bdd import Diagrams, with_enough_memory
-from robosc.synthesis.encoding import Encoding, Layout, domain_size, smallest
+from robosc.synthesis.encoding import BitLayout, Encoding, domain_size, smallest
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -58,7 +58,7 @@ class _Trial:
         self._program = program
         self._model = program.model
         self._effort = effort
-        self._layout = Layout(program.model)
+        self._layout = BitLayout(program.model)
         self._cells, self._inputs, self._events = program.cells, program.inputs, program.events
 
     def run(self, capacity: int) -> Verdict:
@@ -72,9 +72,9 @@ class _Trial:
         widest = max((prod(map(domain_size, event.inputs)) for event in self._events), default=1)
         states = effort.states if known <= effort.states and known * widest <= effort.steps else 0
         command = [self._program.explorer, "reference", str(states), str(effort.steps), str(effort.walk)]
-        done = self._program.done(command)
+        done = self._program.run_command(command)
         if done.returncode != 0:
-            return refuted(PROPERTY, f"{TEXT} ends with status {done.returncode}: {done.stderr.strip()}")
+            return refute(PROPERTY, f"{TEXT} ends with status {done.returncode}: {done.stderr.strip()}")
         word, *numbers = done.stdout.split()
         return self._verdict(system, word, list(map(int, numbers)))
 
@@ -107,22 +107,22 @@ class _Trial:
     def _verdict(self, system: GuardedSystem, word: str, numbers: Sequence[int]) -> Verdict:
         match word:
             case "explored":
-                evidence = f"{counted(numbers[0], 'state')}, {counted(numbers[1], 'step')}"
+                evidence = f"{format_count(numbers[0], 'state')}, {format_count(numbers[1], 'step')}"
                 return Verdict(PROPERTY, Outcome.PROVED, evidence)
             case "walked":
-                return Verdict(PROPERTY, Outcome.SAMPLED, counted(numbers[0], "random step"))
+                return Verdict(PROPERTY, Outcome.SAMPLED, format_count(numbers[0], "random step"))
             case "missing":
-                return refuted(PROPERTY, f"{TEXT} has no event `{event_name(self._events[numbers[0]])}`")
+                return refute(PROPERTY, f"{TEXT} has no event `{event_name(self._events[numbers[0]])}`")
             case "initial":
                 codes = dict(zip(self._cells, numbers, strict=True))
-                return refuted(PROPERTY, f"at the start {different(codes, _start(self._model), TEXT)}")
+                return refute(PROPERTY, f"at the start {different(codes, _start(self._model), TEXT)}")
         return self._difference(system, numbers)
 
     def _difference(self, system: GuardedSystem, numbers: Sequence[int]) -> Verdict:
         event, (possible, enabled, performed) = self._events[numbers[0]], numbers[1:4]
-        told = iter(numbers[4:])
+        codes = iter(numbers[4:])
         before, inputs, after, expected = (
-            dict(zip(elements, told, strict=False))
+            dict(zip(elements, codes, strict=False))
             for elements in (self._cells, self._inputs, self._cells, self._cells)
         )
         state = {domain.element: before.get(domain.element, 0) for domain in self._layout.state}
@@ -134,7 +134,7 @@ class _Trial:
             what = f"{step} {'is enabled but does not' if possible else 'is not enabled but does'} happen in {TEXT}"
         else:
             what = f"after {step}, {'' if possible else 'which can not happen, '}{different(after, expected, TEXT)}"
-        return refuted(PROPERTY, what + where(system, event, state), way)
+        return refute(PROPERTY, what + where(system, event, state), way)
 
 
 def _start(model: sct.SupervisoryControlModel) -> dict[Element, int]:

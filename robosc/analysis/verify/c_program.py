@@ -83,7 +83,7 @@ class CProgram:
         return f"./{name}"
 
     def _compile(self, *arguments: str) -> None:
-        done = self.done([self._compiler, "-std=c99", "-O1", "-w", *arguments])
+        done = self.run_command([self._compiler, "-std=c99", "-O1", "-w", *arguments])
         if done.returncode == 0:
             return
         short = next((line for line in done.stderr.splitlines() if _SHORTAGE.search(line)), None)
@@ -92,14 +92,14 @@ class CProgram:
         first = next((line for line in done.stderr.splitlines() if "error" in line), done.stderr.strip())
         raise CompileError(f"{self._compiler} does not compile {TEXT}: {first}")
 
-    def done(self, command: Sequence[str]) -> subprocess.CompletedProcess[str]:
+    def run_command(self, command: Sequence[str]) -> subprocess.CompletedProcess[str]:
         """Run a command in the folder as `subprocess.run` does; an interrupt also ends its child processes."""
-        with self.running(command) as process:
+        with self.start_command(command) as process:
             output, errors = process.communicate()
         return subprocess.CompletedProcess(command, process.returncode, output, errors)
 
     @contextmanager
-    def running(self, command: Sequence[str]) -> Iterator[subprocess.Popen[str]]:
+    def start_command(self, command: Sequence[str]) -> Iterator[subprocess.Popen[str]]:
         """Start a command in the folder; an exception in the `with` block ends it with its child processes."""
         with subprocess.Popen(  # noqa: S603
             command,
@@ -125,11 +125,11 @@ class CProgram:
         """Return the part of `explorer.c` that depends on the model; `explorer.c` documents each macro."""
 
         def for_all(elements: Sequence[Element]) -> str:
-            told = (
+            expressions = (
                 f"DO({number}, {names.member(element)}, {smallest(element) % 2**64})"
                 for number, element in enumerate(elements)
             )
-            return " ".join(told)
+            return " ".join(expressions)
 
         durations = (f"DO({number}, {names.setting(duration)})" for number, duration in enumerate(self.model.durations))
         events = " ".join(f"{string_literal(event_name(event))}," for event in self.events)

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 from robosc.analysis.verify import c_exploration, loop_exploration
 from robosc.analysis.verify.c_exploration import Effort, explore_events
 from robosc.analysis.verify.c_program import COMPILERS, CompileError, CProgram, c_compiler
-from robosc.analysis.verify.differences import refuted
+from robosc.analysis.verify.differences import refute
 from robosc.analysis.verify.loop_exploration import LoopEffort, explore_loop
-from robosc.analysis.verify.verdict import Outcome, Verdict, timed
+from robosc.analysis.verify.verdict import Outcome, Verdict, measure
 from robosc.base.files.writing import temporary_folder
 from robosc.model.semantics.roles import is_from_cif
 
@@ -64,8 +64,8 @@ def _examined(
         with temporary_folder() as folder:
             try:
                 program = CProgram(model, folder, compiler, files)
-                return [timed(examine, program) for examine in examinations.values()]
+                return [measure(examine, program) for examine in examinations.values()]
             except CompileError as error:
-                return [refuted(question, str(error)) for question in examinations]
+                return [refute(question, str(error)) for question in examinations]
     except OSError as error:  # The C is not the cause.
         return skipped(f"the program cannot run in the folder for temporary files: {error}")

@@ -9,13 +9,13 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robosc.model import expression as ex
-from robosc.model.semantics.cif_types import BOOLEAN, OPERATORS, Type, combined, joined, shown
+from robosc.model.semantics.cif_types import BOOLEAN, OPERATORS, Type, combine_types, format_type, join_types
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 
-class Typed(NamedTuple):
+class TypedExpression(NamedTuple):
     """Expression with its type and its start position in the text."""
 
     position: int
@@ -37,8 +37,8 @@ class _Open:
 
     word: str
     position: int
-    conditions: list[Typed] = field(default_factory=list)
-    values: list[Typed] = field(default_factory=list)
+    conditions: list[TypedExpression] = field(default_factory=list)
+    values: list[TypedExpression] = field(default_factory=list)
 
 
 class ExpressionReader:
@@ -48,13 +48,13 @@ class ExpressionReader:
     outermost operator.
     """
 
-    def __init__(self, read: Any, value_of: Callable[[Any], Typed], *, difference: bool) -> None:
+    def __init__(self, node: Any, value_of: Callable[[Any], TypedExpression], *, difference: bool) -> None:
         """Read an `Expression` of the grammar; `value_of` returns the meaning of an operand."""
-        self._done: list[Typed] = []
+        self._done: list[TypedExpression] = []
         self._open: list[_Open] = []
         self._differences: list[tuple[int, ex.Expression]] = []
-        end = read._tx_position_end  # noqa: SLF001 - textX stores it there
-        for word, token in _tokens(read):
+        end = node._tx_position_end  # noqa: SLF001 - textX stores it there
+        for word, token in _tokens(node):
             if word is None:
                 self._done.append(value_of(token))
             else:
@@ -65,8 +65,8 @@ class ExpressionReader:
                 end, "Expected ')'" if self._open[-1].word == "(" else "Expected the rest of the 'if'"
             )
         [self.result] = self._done
-        for position, made in self._differences:
-            if not (difference and made is self.result.expression):
+        for position, expression in self._differences:
+            if not (difference and expression is self.result.expression):
                 raise ExpressionError(position, "CIF's synthesis takes a '-' at the top of an assignment only")
 
     def _take(self, word: str, position: int) -> None:
@@ -105,35 +105,35 @@ class ExpressionReader:
                 self._open.pop()
                 operand = self._done.pop()
                 self._boolean(operand._replace(position=top.position), "`not` does not apply to {}")
-                self._done.append(Typed(top.position, ex.Negation(operand=operand.expression), BOOLEAN))
+                self._done.append(TypedExpression(top.position, ex.Negation(operand=operand.expression), BOOLEAN))
             elif top.word in OPERATORS and OPERATORS[top.word][0] >= max(level, 1 + (level == 1)):
                 self._open.pop()
                 right, left = self._done.pop(), self._done.pop()
-                kind = _checked(right.position, combined, top.word, left.type, right.type)
-                made = OPERATORS[top.word][1](left=left.expression, right=right.expression)
+                kind = _checked(right.position, combine_types, top.word, left.type, right.type)
+                expression = OPERATORS[top.word][1](left=left.expression, right=right.expression)
                 if top.word == "-":
-                    self._differences.append((right.position, made))
-                self._done.append(Typed(left.position, made, kind))
+                    self._differences.append((right.position, expression))
+                self._done.append(TypedExpression(left.position, expression, kind))
             else:
                 return
 
     @staticmethod
-    def _boolean(operand: Typed, problem: str) -> None:
+    def _boolean(operand: TypedExpression, problem: str) -> None:
         if operand.type != BOOLEAN:
-            raise ExpressionError(operand.position, problem.format(shown(operand.type)))
+            raise ExpressionError(operand.position, problem.format(format_type(operand.type)))
 
     @staticmethod
-    def _choice(top: _Open, otherwise: Typed) -> Typed:
-        made, kind = otherwise.expression, otherwise.type
+    def _choice(top: _Open, otherwise: TypedExpression) -> TypedExpression:
+        expression, kind = otherwise.expression, otherwise.type
         for condition, value in reversed(list(zip(top.conditions, top.values, strict=True))):
-            kind = _checked(top.position, joined, value.type, kind)
-            made = ex.Conditional(condition=condition.expression, then=value.expression, otherwise=made)
-        return Typed(top.position, made, kind)
+            kind = _checked(top.position, join_types, value.type, kind)
+            expression = ex.Conditional(condition=condition.expression, then=value.expression, otherwise=expression)
+        return TypedExpression(top.position, expression, kind)
 
 
-def _tokens(read: Any) -> Iterator[tuple[str | None, Any]]:
+def _tokens(node: Any) -> Iterator[tuple[str | None, Any]]:
     """Yield the tokens of an expression with their words; operands have none."""
-    further = [(None, read.first), *((other.operator, other.operand) for other in read.others)]
+    further = [(None, node.first), *((other.operator, other.operand) for other in node.others)]
     for operator, operand in further:
         if operator is not None:
             yield operator.token, operator
@@ -142,9 +142,9 @@ def _tokens(read: Any) -> Iterator[tuple[str | None, Any]]:
         yield from ((closing.token, closing) for closing in operand.closings)
 
 
-def _checked(position: int, rule: Callable[..., Type], *given: Any) -> Type:
+def _checked(position: int, rule: Callable[..., Type], *operands: Any) -> Type:
     """Return the type by a rule; a type error is reported at this position."""
     try:
-        return rule(*given)
+        return rule(*operands)
     except TypeError as fault:
         raise ExpressionError(position, str(fault)) from None

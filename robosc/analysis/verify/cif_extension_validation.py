@@ -11,8 +11,8 @@ from copy import copy
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from robosc.analysis.system import GuardedSystem, counted
-from robosc.analysis.verify.differences import event_in_words, on_one_side, refuted, where
+from robosc.analysis.system import GuardedSystem, format_count
+from robosc.analysis.verify.differences import event_in_words, on_one_side, refute, where
 from robosc.analysis.verify.transitions import in_range
 from robosc.analysis.verify.verdict import Outcome, Verdict
 from robosc.language.cif import read_supervised
@@ -21,7 +21,7 @@ from robosc.model.semantics.domains import domain
 from robosc.model.semantics.edges import edges_by_event
 from robosc.synthesis import MEMORY
 from robosc.synthesis.bdd import Diagrams, with_enough_memory
-from robosc.synthesis.encoding import Encoding, Layout
+from robosc.synthesis.encoding import BitLayout, Encoding
 from robosc.synthesis.relation import EventRelation, requirements_by_event
 
 if TYPE_CHECKING:
@@ -45,11 +45,11 @@ def validate_extension(model: sct.SupervisoryControlModel, text: str) -> Verdict
         return Verdict(PROPERTY, Outcome.SKIPPED, "", "the CIF that the model was read from cannot be read any more")
     if reading.model is None:
         finding = reading.findings[0]
-        return refuted(PROPERTY, f"{TEXT} is wrong: line {finding.span.line}: {finding.message}")
+        return refute(PROPERTY, f"{TEXT} is wrong: line {finding.span.line}: {finding.message}")
     try:
         comparison = _Comparison(model, reading.model)
     except _DifferenceError as fault:
-        return refuted(PROPERTY, f"{TEXT} is wrong: {fault}")
+        return refute(PROPERTY, f"{TEXT} is wrong: {fault}")
     return with_enough_memory(comparison.run, MEMORY)
 
 
@@ -78,7 +78,7 @@ class _Comparison:
         only = [location for plant in supervisors for location in plant.locations]
         if not all(location.initial and location.marked for location in only):
             raise _DifferenceError("the supervisor does not start, or is not marked")
-        self._layout = Layout(model)
+        self._layout = BitLayout(model)
         self._their_layout = copy(self._layout)
         self._their_layout.model = specification
         self._their_layout.domains = {
@@ -92,8 +92,8 @@ class _Comparison:
                 some, element=plant, size=1, levels=(), halfway_levels=(), next_levels=()
             )
         self._edges = edges_by_event(specification.plants)
-        stated = [requirement for requirement in specification.requirements if not requirement.ranges]
-        self._requirements = requirements_by_event(stated)
+        requirements = [requirement for requirement in specification.requirements if not requirement.ranges]
+        self._requirements = requirements_by_event(requirements)
 
     def _pair(self, what: str, ours: Sequence[ex.NamedElement], theirs: Sequence[ex.NamedElement]) -> None:
         if [_kind(element) for element in ours] != [_kind(element) for element in theirs]:
@@ -106,17 +106,17 @@ class _Comparison:
         encoding, theirs = (Encoding(layout, diagrams) for layout in (self._layout, self._their_layout))
         system = GuardedSystem(self._model, encoding)
         if (system.initial ^ theirs.initial).satisfiable():
-            return refuted(PROPERTY, f"{TEXT} starts in other states")
+            return refute(PROPERTY, f"{TEXT} starts in other states")
         relations = {event: self._relation(event, theirs) for event in system.relations}
         differences = {event: self._differ(system, event, relation) for event, relation in relations.items()}
         anywhere = diagrams.any_of(differences.values())
         if not anywhere.satisfiable():
-            return Verdict(PROPERTY, Outcome.PROVED, f"{counted(len(relations), 'event')} in {system.size}")
+            return Verdict(PROPERTY, Outcome.PROVED, f"{format_count(len(relations), 'event')} in {system.size}")
         path = system.path_to(anywhere)
         codes = path.states[-1]
         event = next(event for event, states in differences.items() if system.is_in(codes, states))
-        said = self._said(system, theirs, event, relations[event], encoding.state(codes))
-        return refuted(PROPERTY, f"{said}{where(system, event, codes)}", system.trace(path))
+        difference = self._describe(system, theirs, event, relations[event], encoding.state(codes))
+        return refute(PROPERTY, f"{difference}{where(system, event, codes)}", system.trace(path))
 
     def _relation(self, event: sct.Event, theirs: Encoding) -> EventRelation:
         counterpart = self._theirs[event]
@@ -134,7 +134,7 @@ class _Comparison:
         moved = (system.relations[event].with_inputs() ^ relation.with_inputs()) & both
         return both if moved.satisfiable() else differ
 
-    def _said(
+    def _describe(
         self, system: GuardedSystem, theirs: Encoding, event: sct.Event, relation: EventRelation, here: Diagram
     ) -> str:
         """Return how an event differs between the generated CIF and the model in a state, as text."""

@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import textx
 
-from robosc.analysis.verify.cif_expressions import ExpressionError, ExpressionReader, Typed
+from robosc.analysis.verify.cif_expressions import ExpressionError, ExpressionReader, TypedExpression
 from robosc.base.files.resources import locate
 from robosc.model import expression as ex
 from robosc.model import sct
 from robosc.model.semantics import cif_types as types
-from robosc.model.semantics.walks import copied
+from robosc.model.semantics.walks import copy_tree
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -54,16 +54,16 @@ def read(text: str) -> Specification:
     if strange is not None:
         raise CifError(f"{_place(text, strange)}: {text[strange]!a} is not ASCII")
     try:
-        return _Reading(_grammar().model_from_str(text), text).specification()
+        return _GrammarConversion(_grammar().model_from_str(text), text).specification()
     except textx.TextXSyntaxError as fault:
         raise CifError(f"line {fault.line}, column {fault.col}: {fault.message}") from None
 
 
-class _Reading:
+class _GrammarConversion:
     """Conversion of grammar objects to metamodel objects."""
 
-    def __init__(self, read: Any, text: str) -> None:
-        self._read = read
+    def __init__(self, node: Any, text: str) -> None:
+        self._node = node
         self._text = text
         #: Declarations outside of automata, and in each automaton.
         self._outer: dict[str, Any] = {}
@@ -73,7 +73,7 @@ class _Reading:
     def specification(self) -> Specification:
         """Return the whole specification. Raises CifError."""
         model = sct.SupervisoryControlModel(name="")
-        self._annotated(self._read)
+        self._annotated(self._node)
         automata: list[tuple[Any, sct.Plant]] = []
         for enumeration in self._of("Enumeration"):
             model.enumerations.append(self._enumeration(enumeration))
@@ -88,7 +88,7 @@ class _Reading:
         supervisor = automata[-1][0] if automata and automata[-1][0].kind == "supervisor" else None
         model.plants.extend(automaton for declaration, automaton in automata if declaration is not supervisor)
         if not model.plants:
-            self._fail(self._read, "there is no plant")
+            self._fail(self._node, "there is no plant")
         invariants: dict[str, list[sct.Requirement]] = {"plant": [], "requirement": [], "supervisor": []}
         for invariant in self._of("Invariant"):
             if type(self._annotated(invariant).restriction).__name__ == "Condition":
@@ -118,40 +118,42 @@ class _Reading:
                 self._fail(declaration, "the automaton that synthesis adds is the last one and has an alphabet")
 
     def _of(self, rule: str) -> list[Any]:
-        return [declaration for declaration in self._read.declarations if type(declaration).__name__ == rule]
+        return [declaration for declaration in self._node.declarations if type(declaration).__name__ == rule]
 
-    def _fail(self, read: Any, reason: str) -> NoReturn:
-        raise CifError(f"{_place(self._text, read._tx_position)}: {reason}")  # noqa: SLF001 - textX stores it there
+    def _fail(self, node: Any, reason: str) -> NoReturn:
+        raise CifError(f"{_place(self._text, node._tx_position)}: {reason}")  # noqa: SLF001 - textX stores it there
 
-    def _annotated(self, read: Any) -> Any:
+    def _annotated(self, node: Any) -> Any:
         """Check the annotations of an object and return it."""
-        for annotation in read.annotations:
+        for annotation in node.annotations:
             if annotation.name.lstrip("@") != "doc":
                 self._fail(annotation, f"there is no annotation {annotation.name}")
             if not annotation.texts:
                 self._fail(annotation, f"{annotation.name} says nothing")
-        return read
+        return node
 
     # Declarations
 
-    def _define(self, element: Any, read: Any, scope: dict[str, Any]) -> Any:
+    def _define(self, element: Any, node: Any, scope: dict[str, Any]) -> Any:
         if element.name in scope:
-            self._fail(read, f"the name '{element.name}' is declared twice")
+            self._fail(node, f"the name '{element.name}' is declared twice")
         scope[element.name] = element
         return element
 
-    def _enumeration(self, read: Any) -> ex.Enumeration:
-        self._annotated(read)
-        made: ex.Enumeration = self._define(ex.Enumeration(name=_plain(read.name)), read.name, self._outer)
-        for literal in read.literals:
+    def _enumeration(self, node: Any) -> ex.Enumeration:
+        self._annotated(node)
+        enumeration: ex.Enumeration = self._define(ex.Enumeration(name=_plain(node.name)), node.name, self._outer)
+        for literal in node.literals:
             self._annotated(literal)
-            made.literals.append(self._define(ex.EnumerationLiteral(name=_plain(literal.name)), literal, self._outer))
-        return made
+            enumeration.literals.append(
+                self._define(ex.EnumerationLiteral(name=_plain(literal.name)), literal, self._outer)
+            )
+        return enumeration
 
-    def _declare(self, read: Any, automaton: sct.Plant) -> None:
+    def _declare(self, node: Any, automaton: sct.Plant) -> None:
         """Read the declarations of an automaton that refer to nothing else."""
         self._inner[automaton] = {}
-        for declaration in read.declarations:
+        for declaration in node.declarations:
             match type(declaration).__name__:
                 case "Events":
                     for name in self._annotated(declaration).names:
@@ -162,59 +164,59 @@ class _Reading:
                         automaton.inputs.append(self._valued(sct.Input, name, declaration, automaton))
                 case "Variables":
                     for variable in self._annotated(declaration).variables:
-                        made = self._valued(sct.DiscreteVariable, variable.name, declaration, automaton)
-                        automaton.variables.append(made)
-        for location in read.locations:
-            self._location(location, automaton, alone=len(read.locations) == 1)
+                        variable_element = self._valued(sct.DiscreteVariable, variable.name, declaration, automaton)
+                        automaton.variables.append(variable_element)
+        for location in node.locations:
+            self._location(location, automaton, alone=len(node.locations) == 1)
         if not any(location.initial for location in automaton.locations):
-            self._fail(read, f"'{automaton.name}' has no initial location")
+            self._fail(node, f"'{automaton.name}' has no initial location")
 
-    def _valued(self, kind: Any, name: Any, read: Any, automaton: sct.Plant) -> Any:
+    def _valued(self, kind: Any, name: Any, node: Any, automaton: sct.Plant) -> Any:
         """Return a variable or input with the type of its declaration."""
-        made = kind(name=_plain(name), type=self._type(read.type, automaton))
-        self._types[made] = _values(made.type)
-        return self._define(made, name, self._inner[automaton])
+        element = kind(name=_plain(name), type=self._type(node.type, automaton))
+        self._types[element] = _values(element.type)
+        return self._define(element, name, self._inner[automaton])
 
-    def _location(self, read: Any, automaton: sct.Plant, *, alone: bool) -> None:
-        self._annotated(read)
-        words = [getattr(element, "word", None) for element in read.elements]
+    def _location(self, node: Any, automaton: sct.Plant, *, alone: bool) -> None:
+        self._annotated(node)
+        words = [getattr(element, "word", None) for element in node.elements]
         location = sct.Location(
-            name=_plain(read.name) if read.name else "", initial="initial" in words, marked="marked" in words
+            name=_plain(node.name) if node.name else "", initial="initial" in words, marked="marked" in words
         )
-        if read.name:
-            self._define(location, read.name, self._inner[automaton])
+        if node.name:
+            self._define(location, node.name, self._inner[automaton])
         elif not alone:
-            self._fail(read, "a location without a name is the only one")
+            self._fail(node, "a location without a name is the only one")
         if location.initial and any(location.initial for location in automaton.locations):
-            self._fail(read, f"'{automaton.name}' has another initial location before this one")
+            self._fail(node, f"'{automaton.name}' has another initial location before this one")
         automaton.locations.append(location)
 
-    def _type(self, read: Any, automaton: sct.Plant) -> ex.Type:
-        match type(read).__name__:
+    def _type(self, node: Any, automaton: sct.Plant) -> ex.Type:
+        match type(node).__name__:
             case "Boolean":
                 return ex.BooleanType()
             case "Range":
-                low, high = (self._number(bound, read) for bound in (read.low, read.high))
+                low, high = (self._number(bound, node) for bound in (node.low, node.high))
                 if low > high:
-                    self._fail(read, f"the range int[{low}..{high}] is empty")
+                    self._fail(node, f"the range int[{low}..{high}] is empty")
                 return ex.IntegerType(minimum=low, maximum=high)
-        enumeration = self._find(read.enumeration, automaton)
+        enumeration = self._find(node.enumeration, automaton)
         if not isinstance(enumeration, ex.Enumeration):
-            self._fail(read, f"'{read.enumeration.text}' is not an enumeration")
+            self._fail(node, f"'{node.enumeration.text}' is not an enumeration")
         return ex.EnumerationType(enumeration=enumeration)
 
-    def _number(self, digits: str, read: Any) -> int:
+    def _number(self, digits: str, node: Any) -> int:
         if int(digits) > types.LARGEST:
-            self._fail(read, f"{digits} does not fit 32 bits")
+            self._fail(node, f"{digits} does not fit 32 bits")
         return int(digits)
 
     # References
 
-    def _fill(self, read: Any, automaton: sct.Plant) -> list[sct.Event]:
+    def _fill(self, node: Any, automaton: sct.Plant) -> list[sct.Event]:
         """Read initial values and edges; return the automaton's alphabet."""
         variables = [
             variable
-            for declaration in read.declarations
+            for declaration in node.declarations
             if type(declaration).__name__ == "Variables"
             for variable in declaration.variables
         ]
@@ -223,52 +225,52 @@ class _Reading:
             if not types.contains(self._types[variable], kind):
                 self._fail(
                     declaration,
-                    f"'{variable.name}' is {self._shown(variable)} and its initial value {types.shown(kind)}",
+                    f"'{variable.name}' is {self._shown(variable)} and its initial value {types.format_type(kind)}",
                 )
             variable.initial = value
-        for location, declaration in zip(automaton.locations, read.locations, strict=True):
+        for location, declaration in zip(automaton.locations, node.locations, strict=True):
             for edge in declaration.elements:
                 if type(edge).__name__ == "Edge":
                     location.edges.append(self._edge(edge, location, automaton))
-        return self._alphabet(read, automaton)
+        return self._alphabet(node, automaton)
 
-    def _alphabet(self, read: Any, automaton: sct.Plant) -> list[sct.Event]:
-        declared = self._events(read, "Alphabet", automaton)
+    def _alphabet(self, node: Any, automaton: sct.Plant) -> list[sct.Event]:
+        declared = self._events(node, "Alphabet", automaton)
         edges = [
-            element for location in read.locations for element in location.elements if type(element).__name__ == "Edge"
+            element for location in node.locations for element in location.elements if type(element).__name__ == "Edge"
         ]
         used = [self._event(edge.event, automaton) for edge in edges]
         if declared is not None:
             for edge, event in zip(edges, used, strict=True):
                 if event not in declared:
                     self._fail(edge, f"'{edge.event.text}' is not in the alphabet of '{automaton.name}'")
-            if read.kind != "supervisor" and set(declared) != set(used):
-                self._fail(read, f"an event in the alphabet of '{automaton.name}' has no edge")
+            if node.kind != "supervisor" and set(declared) != set(used):
+                self._fail(node, f"an event in the alphabet of '{automaton.name}' has no edge")
         alphabet = list(dict.fromkeys(used)) if declared is None else declared
-        monitored = self._events(read, "Monitor", automaton)
+        monitored = self._events(node, "Monitor", automaton)
         for event in (monitored or alphabet) if monitored is not None else ():
             if event not in alphabet:
-                self._fail(read, f"'{event.name}' is monitored and not in the alphabet of '{automaton.name}'")
+                self._fail(node, f"'{event.name}' is monitored and not in the alphabet of '{automaton.name}'")
             for location in automaton.locations:
                 _monitor(event, location)
         return alphabet
 
-    def _events(self, read: Any, rule: str, automaton: sct.Plant) -> list[sct.Event] | None:
+    def _events(self, node: Any, rule: str, automaton: sct.Plant) -> list[sct.Event] | None:
         """Return the events of the declaration of this kind; None if there is none."""
-        found = [declaration for declaration in read.declarations if type(declaration).__name__ == rule]
-        for another in found[1:]:
+        declarations = [declaration for declaration in node.declarations if type(declaration).__name__ == rule]
+        for another in declarations[1:]:
             self._fail(another, f"'{automaton.name}' has another {rule.lower()} before this one")
-        return [self._event(event, automaton) for event in found[0].events] if found else None
+        return [self._event(event, automaton) for event in declarations[0].events] if declarations else None
 
-    def _edge(self, read: Any, location: sct.Location, automaton: sct.Plant) -> sct.Edge:
-        self._annotated(read)
-        target = self._find(read.target, automaton) if read.target else location
+    def _edge(self, node: Any, location: sct.Location, automaton: sct.Plant) -> sct.Edge:
+        self._annotated(node)
+        target = self._find(node.target, automaton) if node.target else location
         if not isinstance(target, sct.Location) or target.eContainer() is not automaton:
-            self._fail(read.target, f"'{read.target.text}' is not a location of '{automaton.name}'")
-        edge = sct.Edge(event=self._event(read.event, automaton), target=target)
-        if read.guard:
-            edge.guard = self._condition(read.guard, automaton)
-        for update in read.updates:
+            self._fail(node.target, f"'{node.target.text}' is not a location of '{automaton.name}'")
+        edge = sct.Edge(event=self._event(node.event, automaton), target=target)
+        if node.guard:
+            edge.guard = self._condition(node.guard, automaton)
+        for update in node.updates:
             variable = self._find(update.variable, automaton)
             if not isinstance(variable, sct.DiscreteVariable):
                 self._fail(update, f"'{update.variable.text}' is not a variable")
@@ -279,85 +281,86 @@ class _Reading:
             value, kind = self._expression(update.value, automaton, assigned=True)
             if not types.overlap(self._types[variable], kind):
                 self._fail(
-                    update, f"'{variable.name}' is {self._shown(variable)} and its new value {types.shown(kind)}"
+                    update,
+                    f"'{variable.name}' is {self._shown(variable)} and its new value {types.format_type(kind)}",
                 )
             edge.updates.append(sct.Update(variable=variable, value=value))
         return edge
 
     def _shown(self, variable: sct.DiscreteVariable) -> str:
-        return types.shown(self._types[variable])
+        return types.format_type(self._types[variable])
 
-    def _state_invariant(self, read: Any) -> sct.StateInvariant:
-        if read.kind != "requirement":
-            self._fail(read, f"an invariant of states is a requirement, not of a {read.kind}")
-        made = sct.StateInvariant(condition=self._condition(read.restriction.condition, None))
-        if read.name:
-            made.name = _plain(read.name)
-            self._define(made, read.name, self._outer)
-        return made
+    def _state_invariant(self, node: Any) -> sct.StateInvariant:
+        if node.kind != "requirement":
+            self._fail(node, f"an invariant of states is a requirement, not of a {node.kind}")
+        invariant = sct.StateInvariant(condition=self._condition(node.restriction.condition, None))
+        if node.name:
+            invariant.name = _plain(node.name)
+            self._define(invariant, node.name, self._outer)
+        return invariant
 
-    def _exclusion(self, read: Any) -> sct.Requirement:
+    def _exclusion(self, node: Any) -> sct.Requirement:
         return sct.Requirement(
-            event=self._event(read.event, None),
-            kind=getattr(sct.RequirementKind, type(read).__name__.lower()),
-            condition=self._condition(read.condition, None),
+            event=self._event(node.event, None),
+            kind=getattr(sct.RequirementKind, type(node).__name__.lower()),
+            condition=self._condition(node.condition, None),
         )
 
-    def _event(self, read: Any, automaton: sct.Plant | None) -> sct.Event:
-        event = self._find(read, automaton)
+    def _event(self, node: Any, automaton: sct.Plant | None) -> sct.Event:
+        event = self._find(node, automaton)
         if not isinstance(event, sct.Event):
-            self._fail(read, f"'{read.text}' is not an event")
+            self._fail(node, f"'{node.text}' is not an event")
         return event
 
-    def _find(self, read: Any, automaton: sct.Plant | None) -> Any:
+    def _find(self, node: Any, automaton: sct.Plant | None) -> Any:
         """Return the element of a name inside an automaton: the nearest first identifier, then its members."""
-        first, *others = read.text.replace("$", "").split(".")
+        first, *others = node.text.replace("$", "").split(".")
         inner = {} if automaton is None else self._inner[automaton]
-        found = inner.get(first) or self._outer.get(first)
+        element = inner.get(first) or self._outer.get(first)
         for part in others:
-            if found is not None and found not in self._inner:
-                self._fail(read, f"'{found.name}' has no members, so no '{read.text}'")
-            found = None if found is None else self._inner[found].get(part)
-        if found is None:
-            self._fail(read, f"there is no '{read.text}'")
-        return found
+            if element is not None and element not in self._inner:
+                self._fail(node, f"'{element.name}' has no members, so no '{node.text}'")
+            element = None if element is None else self._inner[element].get(part)
+        if element is None:
+            self._fail(node, f"there is no '{node.text}'")
+        return element
 
     # Expressions
 
-    def _condition(self, read: Any, automaton: sct.Plant | None) -> ex.Expression:
-        made, kind = self._expression(read, automaton)
+    def _condition(self, node: Any, automaton: sct.Plant | None) -> ex.Expression:
+        expression, kind = self._expression(node, automaton)
         if kind != types.BOOLEAN:
-            self._fail(read, f"a condition is bool and this is {types.shown(kind)}")
-        return made
+            self._fail(node, f"a condition is bool and this is {types.format_type(kind)}")
+        return expression
 
     def _expression(
-        self, read: Any, automaton: sct.Plant | None, *, constant: bool = False, assigned: bool = False
+        self, node: Any, automaton: sct.Plant | None, *, constant: bool = False, assigned: bool = False
     ) -> tuple[ex.Expression, types.Type]:
         """Return an expression and its type; `constant` and `assigned` restrict the syntax.
 
         `automaton` is the scope of names, None outside of automata.
         """
 
-        def value_of(operand: Any) -> Typed:
+        def value_of(operand: Any) -> TypedExpression:
             position = operand._tx_position  # noqa: SLF001
             match type(operand).__name__:
                 case "Truth":
-                    return Typed(position, ex.BooleanLiteral(value=operand.value == "true"), types.BOOLEAN)
+                    return TypedExpression(position, ex.BooleanLiteral(value=operand.value == "true"), types.BOOLEAN)
                 case "Literal":
                     number = self._number(operand.value, operand)
-                    return Typed(position, ex.IntegerLiteral(value=number), range(number, number + 1))
-            return Typed(position, *self._reference(operand, automaton, constant=constant))
+                    return TypedExpression(position, ex.IntegerLiteral(value=number), range(number, number + 1))
+            return TypedExpression(position, *self._reference(operand, automaton, constant=constant))
 
         try:
-            _, made, kind = ExpressionReader(read, value_of, difference=assigned).result
+            _, expression, kind = ExpressionReader(node, value_of, difference=assigned).result
         except ExpressionError as fault:
             raise CifError(f"{_place(self._text, fault.position)}: {fault}") from None
-        return made, kind
+        return expression, kind
 
-    def _reference(self, read: Any, automaton: sct.Plant | None, *, constant: bool) -> tuple[ex.Expression, types.Type]:
-        element = self._find(read.name, automaton)
+    def _reference(self, node: Any, automaton: sct.Plant | None, *, constant: bool) -> tuple[ex.Expression, types.Type]:
+        element = self._find(node.name, automaton)
         if constant and not isinstance(element, ex.EnumerationLiteral):
-            self._fail(read, f"'{read.name.text}' is not a constant")
+            self._fail(node, f"'{node.name.text}' is not a constant")
         match element:
             case sct.DiscreteVariable():
                 return sct.VariableReference(variable=element), self._types[element]
@@ -367,14 +370,14 @@ class _Reading:
                 return sct.LocationReference(location=element), types.BOOLEAN
             case ex.EnumerationLiteral():
                 return ex.EnumerationLiteralReference(literal=element), element.eContainer()
-        return self._fail(read, f"'{read.name.text}' has no value")
+        return self._fail(node, f"'{node.name.text}' has no value")
 
 
-def _automaton(read: Any) -> sct.Plant:
-    made = sct.Plant(name=_plain(read.name))
-    if read.kind != "plant":
-        made.kind = sct.PlantKind.requirement
-    return made
+def _automaton(node: Any) -> sct.Plant:
+    expression = sct.Plant(name=_plain(node.name))
+    if node.kind != "plant":
+        expression.kind = sct.PlantKind.requirement
+    return expression
 
 
 def _place(text: str, position: int) -> str:
@@ -387,7 +390,7 @@ def _monitor(event: sct.Event, location: sct.Location) -> None:
     guards = [edge.guard for edge in location.edges if edge.event is event]
     if any(guard is None for guard in guards):
         return
-    otherwise: list[ex.Expression] = [ex.Negation(operand=copied(guard)) for guard in guards if guard is not None]
+    otherwise: list[ex.Expression] = [ex.Negation(operand=copy_tree(guard)) for guard in guards if guard is not None]
     guard = reduce(lambda left, right: ex.Conjunction(left=left, right=right), otherwise) if otherwise else None
     location.edges.append(sct.Edge(event=event, target=location, guard=guard))
 
@@ -403,5 +406,5 @@ def _values(kind: ex.Type) -> types.Type:
     return types.BOOLEAN
 
 
-def _plain(read: Any) -> str:
-    return (read if isinstance(read, str) else read.text).removeprefix("$")
+def _plain(node: Any) -> str:
+    return (node if isinstance(node, str) else node.text).removeprefix("$")

@@ -6,11 +6,11 @@ from copy import copy
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from robosc.analysis.system import GuardedSystem, counted
+from robosc.analysis.system import GuardedSystem, format_count
 from robosc.analysis.verify.cif_extension_validation import PROPERTY, TEXT, validate_extension
 from robosc.analysis.verify.cif_reading import CifError, Specification, read
 from robosc.analysis.verify.correspondence import Correspondence
-from robosc.analysis.verify.differences import different, event_in_words, on_one_side, refuted, where
+from robosc.analysis.verify.differences import different, event_in_words, on_one_side, refute, where
 from robosc.analysis.verify.transitions import (
     AmbiguityError,
     Transition,
@@ -24,7 +24,7 @@ from robosc.model.semantics.edges import edges_by_event
 from robosc.model.semantics.roles import is_from_cif
 from robosc.synthesis import MEMORY, arithmetic
 from robosc.synthesis.bdd import Diagrams, with_enough_memory
-from robosc.synthesis.encoding import Encoding, Layout, pick, referenced, smallest
+from robosc.synthesis.encoding import BitLayout, Encoding, pick, referenced_elements, smallest
 from robosc.synthesis.relation import requirements_by_event
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ def _validate(model: sct.SupervisoryControlModel, text: str, *, supervised: bool
         )
         return with_enough_memory(comparison.run, MEMORY)
     except (CifError, AmbiguityError, ModelError) as fault:
-        return refuted(PROPERTY, f"{what} is wrong: {fault}")
+        return refute(PROPERTY, f"{what} is wrong: {fault}")
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ class _Difference:
     """States and inputs in which the model and its CIF disagree about an event.
 
     With an `element`, the bits are those of its code after the event, where both allow the event. Without one, the bit
-    is whether the plants enable the event, or, if `asked`, whether the requirements allow it.
+    is whether the plants enable the event, or, if `by_requirement`, whether the requirements allow it.
     """
 
     event: sct.Event
@@ -80,7 +80,7 @@ class _Difference:
     ours: tuple[Diagram, ...]
     theirs: tuple[Diagram, ...]
     where: Diagram
-    asked: bool = False
+    by_requirement: bool = False
 
 
 class _Comparison:
@@ -106,10 +106,10 @@ class _Comparison:
         self._correspondence = correspondence
         self._supervised = supervised
         self._text = TEXT if supervised else UNSUPERVISED
-        self._asked = requirements_by_event(model.requirements)
+        self._requirements = requirements_by_event(model.requirements)
         self._their_invariants = list(specification.model.invariants)
         self._invariants = requirements_by_event([*specification.invariants, *specification.model.requirements])
-        self._layout = Layout(model)
+        self._layout = BitLayout(model)
         self._inputs = [domain for domain in self._layout.domains.values() if isinstance(domain.element, sct.Input)]
         self._their_layout = copy(self._layout)
         self._their_layout.domains = {}
@@ -134,47 +134,48 @@ class _Comparison:
             for layout in (self._layout, self._their_layout)
         )
         system = GuardedSystem(self._model, encoding, guards=self._supervised)
-        held = ((domain.element, self._correspondence.holding(domain.element)) for domain in self._layout.state)
+        counterparts = ((domain.element, self._correspondence.holding(domain.element)) for domain in self._layout.state)
         initial = {
             element: self._initial(counterpart, theirs)
-            for element, counterpart in held
+            for element, counterpart in counterparts
             if isinstance(counterpart, sct.DiscreteVariable)
         }
         if any(code != encoding.initial_codes[element] for element, code in initial.items()):
-            return refuted(PROPERTY, f"at the start {different(initial, encoding.initial_codes, self._text)}")
+            return refute(PROPERTY, f"at the start {different(initial, encoding.initial_codes, self._text)}")
         fault = None if self._supervised else self._invariants_differ(system, theirs)
         if fault is not None:
             return fault
-        found = list(self._differences(system, theirs))
-        if not found:
-            evidence = f"{counted(len(system.relations), 'event')} in both files, each in every state"
+        differences = list(self._differences(system, theirs))
+        if not differences:
+            evidence = f"{format_count(len(system.relations), 'event')} in both files, each in every state"
             return Verdict(PROPERTY, Outcome.PROVED, evidence)
-        reached = [difference for difference in found if (difference.where & system.controlled).satisfiable()]
+        reached = [difference for difference in differences if (difference.where & system.controlled).satisfiable()]
         if not reached:
-            codes = pick(found[0].where, self._layout.domains.values())
-            return refuted(PROPERTY, f"{self._said(system, found[0], codes)}, in a state that the robot never reaches")
+            codes = pick(differences[0].where, self._layout.domains.values())
+            difference = self._describe(system, differences[0], codes)
+            return refute(PROPERTY, f"{difference}, in a state that the robot never reaches")
         inputs = encoding.diagrams.cube(level for domain in self._inputs for level in domain.levels)
         path = system.path_to(reached[0].where.exists(inputs) & system.controlled)
         codes = path.states[-1] | pick(reached[0].where & encoding.state(path.states[-1]), self._inputs)
-        return refuted(PROPERTY, self._said(system, reached[0], codes), system.trace(path))
+        return refute(PROPERTY, self._describe(system, reached[0], codes), system.trace(path))
 
     def _invariants_differ(self, system: GuardedSystem, theirs: Encoding) -> Verdict | None:
         """Return a refutation if the invariants allow other states in CIF; None if they agree."""
         encoding = system.encoding
         valid = encoding.diagrams.all_of(encoding.in_domain(domain.element) for domain in self._layout.state)
-        ours, asked = (
+        ours, cif_states = (
             view.diagrams.any_of(~view.holds(invariant.condition) for invariant in invariants)
             for view, invariants in ((encoding, self._model.invariants), (theirs, self._their_invariants))
         )
-        differ = (ours ^ asked) & valid
+        differ = (ours ^ cif_states) & valid
         if not differ.satisfiable():
             return None
         codes = pick(differ, self._layout.state)
-        allowed = "forbids" if system.is_in(codes, asked) else "allows"
-        elements = (element for invariant in self._model.invariants for element in referenced(invariant.condition))
-        return refuted(
-            PROPERTY, f"by its invariants {self._text} {allowed} the state `{system.where(codes, elements)}`"
+        allowed = "forbids" if system.is_in(codes, cif_states) else "allows"
+        elements = (
+            element for invariant in self._model.invariants for element in referenced_elements(invariant.condition)
         )
+        return refute(PROPERTY, f"by its invariants {self._text} {allowed} the state `{system.where(codes, elements)}`")
 
     @staticmethod
     def _initial(counterpart: sct.DiscreteVariable, theirs: Encoding) -> int:
@@ -190,10 +191,12 @@ class _Comparison:
         valid = encoding.diagrams.all_of(map(encoding.in_domain, self._layout.domains))
         for event, transition in of_system(system).items():
             if not self._supervised:
-                ours = _allowed(self._asked.get(event, []), encoding)
-                asked = _allowed(self._invariants.get(self._correspondence.event(event) or event, []), theirs)
-                if ((ours ^ asked) & valid).satisfiable():
-                    yield _Difference(event, None, (ours,), (asked,), (ours ^ asked) & valid, asked=True)
+                ours = _allowed(self._requirements.get(event, []), encoding)
+                permitted = _allowed(self._invariants.get(self._correspondence.event(event) or event, []), theirs)
+                if ((ours ^ permitted) & valid).satisfiable():
+                    yield _Difference(
+                        event, None, (ours,), (permitted,), (ours ^ permitted) & valid, by_requirement=True
+                    )
             counterpart = self._their_transition(event, theirs)
             compared: list[_Bits] = [(None, (transition.enabled,), (counterpart.enabled,), encoding.diagrams.true)]
             both = transition.enabled & counterpart.enabled
@@ -226,7 +229,7 @@ class _Comparison:
             enabled &= _allowed(self._invariants.get(counterpart, []), theirs)
         return Transition(enabled, transition.after)
 
-    def _said(self, system: GuardedSystem, difference: _Difference, codes: Mapping[Element, int]) -> str:
+    def _describe(self, system: GuardedSystem, difference: _Difference, codes: Mapping[Element, int]) -> str:
         """Return the difference in the state and inputs with these codes, as text."""
         event, element = difference.event, difference.element
         here = system.diagrams.all_of(system.encoding.has_code(cell, code) for cell, code in codes.items())
@@ -239,8 +242,12 @@ class _Comparison:
             what = on_one_side(step, self._text, translated=bool(theirs))
         else:
             what = f"after {step}, {different({element: theirs}, {element: ours}, self._text)}"
-        asked = self._asked.get(event, []) if difference.asked else []
-        return ("by the requirements " if difference.asked else "") + what + where(system, event, codes, asked)
+        requirements = self._requirements.get(event, []) if difference.by_requirement else []
+        return (
+            ("by the requirements " if difference.by_requirement else "")
+            + what
+            + where(system, event, codes, requirements)
+        )
 
 
 def _allowed(requirements: Iterable[sct.Requirement], encoding: Encoding) -> Diagram:

@@ -132,17 +132,17 @@ class Correspondence:
 
 def _excluded(guard: ex.Expression | None, carried: sct.Input) -> set[ex.EnumerationLiteral]:
     """Return the literals that a guard excludes for an input, by inequations joined with `and`."""
-    found: set[ex.EnumerationLiteral] = set()
+    literals: set[ex.EnumerationLiteral] = set()
     pending = [guard]
     while pending:
         match pending.pop():
             case ex.Conjunction(left=left, right=right):
                 pending += [left, right]
             case ex.Inequation(
-                left=sct.InputReference() as read, right=ex.EnumerationLiteralReference(literal=literal)
-            ) if read.input is carried:
-                found.add(literal)
-    return found
+                left=sct.InputReference() as reference, right=ex.EnumerationLiteralReference(literal=literal)
+            ) if reference.input is carried:
+                literals.add(literal)
+    return literals
 
 
 def _same_name(ours: ex.NamedElement, theirs: ex.NamedElement) -> bool:

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 from robosc.analysis.paths import TraceStep
 from robosc.analysis.verify.verdict import Outcome, Verdict
-from robosc.analysis.wording import condition, with_words
+from robosc.analysis.wording import condition, describe_event
 from robosc.model.semantics.roles import event_name
 from robosc.synthesis.decoding import value
-from robosc.synthesis.encoding import domain_size, referenced, smallest
+from robosc.synthesis.encoding import domain_size, referenced_elements, smallest
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 def event_in_words(event: sct.Event, inputs: Mapping[Element, int]) -> str:
     """Return the event with those of its inputs whose codes are given."""
     values = {parameter.name: value(parameter, inputs[parameter]) for parameter in event.inputs if parameter in inputs}
-    meaning = with_words(event).removeprefix(event_name(event))
+    meaning = describe_event(event).removeprefix(event_name(event))
     return f"`{TraceStep(event_name(event), values)}`{meaning}"
 
 
@@ -41,20 +41,22 @@ def different(theirs: Mapping[Element, int], ours: Mapping[Element, int], transl
 
 
 def where(
-    system: GuardedSystem, event: sct.Event, state: Mapping[Element, int], asked: Iterable[sct.Requirement] = ()
+    system: GuardedSystem, event: sct.Event, state: Mapping[Element, int], requirements: Iterable[sct.Requirement] = ()
 ) -> str:
     """Return the part of a state that an event and its requirements depend on, as text."""
     touched = set(system.relations[event].touched)
     if event in system.guards:
-        touched.update(referenced(system.guards[event].requirement), referenced(system.guards[event].synthesis))
-    for requirement in asked:
-        touched.update(referenced(requirement.condition))
+        touched.update(
+            referenced_elements(system.guards[event].requirement), referenced_elements(system.guards[event].synthesis)
+        )
+    for requirement in requirements:
+        touched.update(referenced_elements(requirement.condition))
     elements = [element for plant in system.model.plants for element in (plant, *plant.variables) if element in touched]
-    said = system.where(state, elements)
-    return f" where `{said}`" if said else ""
+    condition = system.where(state, elements)
+    return f" where `{condition}`" if condition else ""
 
 
-def refuted(question: str, explanation: str, way: tuple[TraceStep, ...] = ()) -> Verdict:
+def refute(question: str, explanation: str, way: tuple[TraceStep, ...] = ()) -> Verdict:
     """Return the verdict on a translation that differs from the model."""
     return Verdict(question, Outcome.REFUTED, "", explanation, way)
 

@@ -24,15 +24,15 @@ if TYPE_CHECKING:
     from robosc.analysis.system import GuardedSystem
     from robosc.synthesis.bdd import Diagram
     from robosc.synthesis.encoding import Element
-    from robosc.synthesis.relation import Step
+    from robosc.synthesis.relation import SymbolicStep
     from robosc.synthesis.run_to_completion import InternalEvent
 
-    Property = Callable[["ControlLoop"], Verdict]
+    Property = Callable[["LoopModel"], Verdict]
     Fire = Callable[["_Batch", Diagram], Diagram]
-    Close = Callable[[list[Step], Diagram], Diagram]
+    Close = Callable[[list[SymbolicStep], Diagram], Diagram]
 
 
-def asked_of_the_loop(name: str) -> Callable[[Property], Property]:
+def require_loop_states(name: str) -> Callable[[Property], Property]:
     """Decorate a property so that it is skipped if the states of the loop cannot be computed.
 
     `name` is the name of the property.
@@ -40,7 +40,7 @@ def asked_of_the_loop(name: str) -> Callable[[Property], Property]:
 
     def decorator(examine: Property) -> Property:
         @wraps(examine)
-        def examined(loop: ControlLoop) -> Verdict:
+        def examined(loop: LoopModel) -> Verdict:
             try:
                 return examine(loop)
             except ModelError as fault:
@@ -82,7 +82,7 @@ class _Batch:
         return path
 
 
-class ControlLoop:
+class LoopModel:
     """Model of the order of events in the control loop.
 
     Internal events and the choice of data happen at any time. Requests, cancels and events from the robot happen only
@@ -133,7 +133,7 @@ class ControlLoop:
         """States of the loop in which no internal event can happen, unless it is held back."""
         return self.states & ~self._active
 
-    def held(self, event: sct.Event) -> Diagram:
+    def withheld(self, event: sct.Event) -> Diagram:
         """Return the states in which an internal event may be held back: the reset of a failed call."""
         encoding = self.system.encoding
         if event.kind != sct.EventKind.reset:
@@ -191,7 +191,7 @@ class ControlLoop:
     def _active(self) -> Diagram:
         """States in which an internal event can happen that is not held back."""
         internal = self.system.internal
-        return self.system.diagrams.any_of(event.allowed & ~self.held(event.relation.event) for event in internal)
+        return self.system.diagrams.any_of(event.allowed & ~self.withheld(event.relation.event) for event in internal)
 
     @cached_property
     def _overruns(self) -> bool:
@@ -209,12 +209,12 @@ class ControlLoop:
 
     def _closure(self, states: Diagram, fire: Fire, close: Close, acceleration: _LoopAcceleration) -> Diagram:
         for turn in count(1):
-            found = states = close(self._free, states)
+            closed = states = close(self._free, states)
             for batch, near in self._waiting:
                 more = states | fire(batch, states)
                 # Without this, the states in which others are quiescent again would be added one by one.
                 states = states if more == states else close(near, more)
-            if states == found:
+            if states == closed:
                 break
             states = acceleration.taken(states, turn)
         return states
@@ -229,8 +229,8 @@ class _LoopAcceleration:
 
     def __init__(
         self,
-        free: Sequence[Step],
-        waiting: Sequence[tuple[_Batch, Sequence[Step]]],
+        free: Sequence[SymbolicStep],
+        waiting: Sequence[tuple[_Batch, Sequence[SymbolicStep]]],
         where: Diagram,
         within: Diagram,
         *,
@@ -257,7 +257,7 @@ class _LoopAcceleration:
         return states
 
     @cached_property
-    def _restricted(self) -> list[list[Step]]:
+    def _restricted(self) -> list[list[SymbolicStep]]:
         """Batches whose events are restricted to the states in which the loop permits them."""
         return [[replace(step, relation=step.relation & self._where) for step in steps] for steps in self._batches]
 

@@ -9,11 +9,11 @@ from math import prod
 from random import Random
 from typing import TYPE_CHECKING, Any
 
-from robosc.analysis.system import counted
-from robosc.analysis.verify.differences import refuted
-from robosc.analysis.verify.loop_lockstep import DifferenceError, Kept, Lockstep
+from robosc.analysis.system import format_count
+from robosc.analysis.verify.differences import refute
+from robosc.analysis.verify.loop_lockstep import DifferenceError, Lockstep, SavedLoops
 from robosc.analysis.verify.verdict import Outcome, Verdict
-from robosc.engine import Settings, remembered
+from robosc.engine import Settings, cache_transformations
 from robosc.model.semantics.roles import Roles
 
 if TYPE_CHECKING:
@@ -63,16 +63,16 @@ def explore_loop(program: CProgram, effort: LoopEffort | None = None) -> Verdict
     """
     effort = effort or LoopEffort()
     most = max(_QUESTIONS // max(len(program.events), 1), 1)
-    with remembered(), program.running([program.follower]) as process:
+    with cache_transformations(), program.start_command([program.follower]) as process:
         lockstep = Lockstep(program.model, process)
         try:
             seen = _explored(lockstep, min(effort.explored, most))
             walked = _walked(lockstep, min(effort.walked, most))
         except DifferenceError as error:
-            return refuted(PROPERTY, str(error), tuple(error.seen))
+            return refute(PROPERTY, str(error), tuple(error.seen))
         finally:
             _end(process)
-    evidence = f"{counted(seen.states, 'state')}, {counted(seen.operations, 'operation')}"
+    evidence = f"{format_count(seen.states, 'state')}, {format_count(seen.operations, 'operation')}"
     if seen.complete:
         return Verdict(PROPERTY, Outcome.PROVED, evidence)
     return Verdict(PROPERTY, Outcome.SAMPLED, f"{evidence}, then {walked:,} at random")
@@ -97,18 +97,18 @@ class _Seen:
 
 
 @dataclass(frozen=True)
-class _Node:
+class _SearchNode:
     """Saved state of both loops, with its predecessor."""
 
-    kept: Kept
-    before: _Node | None = None
+    saved: SavedLoops
+    before: _SearchNode | None = None
 
     def way(self) -> list[TraceStep]:
         """Return the events from the start to this node."""
         steps: list[TraceStep] = []
-        node: _Node | None = self
+        node: _SearchNode | None = self
         while node is not None:
-            steps[:0] = node.kept.seen
+            steps[:0] = node.saved.seen
             node = node.before
         return steps
 
@@ -127,8 +127,8 @@ def _breadth_first(lockstep: Lockstep, seen: _Seen, operations: int) -> None:
     """Explore the states from the current one; a node is the start of a batch, which has the least history."""
     tried = _operations(lockstep)
     lockstep.keep()
-    pending = deque(_Node(kept) for kept in lockstep.compare())
-    reached = {_key(node.kept) for node in pending}
+    pending = deque(_SearchNode(start) for start in lockstep.compare())
+    reached = {_key(node.saved) for node in pending}
     while pending:
         node = pending.popleft()
         seen.states += 1
@@ -137,30 +137,30 @@ def _breadth_first(lockstep: Lockstep, seen: _Seen, operations: int) -> None:
             if spent := seen.operations >= operations:
                 break
             lockstep.seen.clear()
-            lockstep.go_back(node.kept)
+            lockstep.go_back(node.saved)
             if operation(lockstep):
                 seen.operations += 1
                 lockstep.operate("b")
                 lockstep.keep()
         try:
-            found = lockstep.compare()
+            successors = lockstep.compare()
         except DifferenceError as error:
             error.seen = [*node.way(), *error.seen]
             raise
         if spent:
             seen.complete = False
             return
-        for kept in found:
-            if (key := _key(kept)) not in reached:
+        for saved in successors:
+            if (key := _key(saved)) not in reached:
                 reached.add(key)
-                pending.append(_Node(kept, node))
+                pending.append(_SearchNode(saved, node))
 
 
-def _key(kept: Kept) -> tuple[Any, ...]:
+def _key(saved: SavedLoops) -> tuple[Any, ...]:
     """Return a key that is equal for equivalent states: times are relative to the current time."""
-    now, up = kept.saved.timers
+    now, up = saved.saved.timers
     times = tuple((number, until - now) for number, until in sorted(up.items()))
-    return kept.saved.cells, kept.saved.rest, times, kept.first
+    return saved.saved.cells, saved.saved.rest, times, saved.first
 
 
 def _operations(lockstep: Lockstep) -> list[Operation]:

@@ -48,7 +48,7 @@ class DifferenceError(Exception):
 
 
 @dataclass(frozen=True)
-class Kept:
+class SavedLoops:
     """Saved state of both loops, with the events `seen` until then.
 
     `number` identifies the state of the generated loop. `first` is the number of the first state that equals it except
@@ -66,7 +66,7 @@ class _Noted:
     """Script of operations, output of the Python loop for them, and its state afterwards."""
 
     script: str
-    said: list[str]
+    output: list[str]
     saved: SavedLoop
     seen: tuple[TraceStep, ...]
 
@@ -88,7 +88,7 @@ class Lockstep:
         self._numbers = {name: number for number, name in enumerate(self.names)}
         self._follower = follower
         self._script: list[str] = []
-        self._said: list[str] = []
+        self._output: list[str] = []
         self._noted: list[_Noted] = []
         self._happened: list[str] = []
         #: Text of the codes of each state so far.
@@ -145,7 +145,7 @@ class Lockstep:
         data = {}
         for parameter, code in zip(self.events[number].inputs, codes, strict=True):
             place, domain = self._inputs[parameter]
-            data[parameter.name] = domain.shown(domain.low + code)
+            data[parameter.name] = domain.external(domain.low + code)
             self._script.append(f"i {place} {code}")
         self._script.append(f"p {number}")
         self._performed = self.names[number], data
@@ -174,26 +174,26 @@ class Lockstep:
         timers.at(timers.now + milliseconds)
         self._script.append(f"c {timers.now % 2**32}")
 
-    def go_back(self, kept: Kept) -> None:
+    def go_back(self, saved: SavedLoops) -> None:
         """Restore both loops to a saved state."""
-        self.loop.restore(kept.saved)
-        self._script.append(f"g {kept.number}")
+        self.loop.restore(saved.saved)
+        self._script.append(f"g {saved.number}")
 
     def keep(self) -> None:
         """Save the state of both loops for `go_back`."""
         self._script.append("k")
-        self._noted.append(_Noted("\n".join([*self._script, ""]), self._said, self.loop.saved, tuple(self.seen)))
-        self._script, self._said = [], []
+        self._noted.append(_Noted("\n".join([*self._script, ""]), self._output, self.loop.saved, tuple(self.seen)))
+        self._script, self._output = [], []
 
-    def compare(self) -> list[Kept]:
+    def compare(self) -> list[SavedLoops]:
         """Run the generated loop, compare it with the Python loop, and return the states saved since the last time."""
         noted, self._noted = self._noted, []
-        kept: list[Kept] = []
-        while len(kept) < len(noted):
-            kept += self._compared(noted[len(kept) :])
-        return kept
+        states: list[SavedLoops] = []
+        while len(states) < len(noted):
+            states += self._compared(noted[len(states) :])
+        return states
 
-    def _compared(self, noted: Sequence[_Noted]) -> list[Kept]:
+    def _compared(self, noted: Sequence[_Noted]) -> list[SavedLoops]:
         """Compare as many of the first operations as fit into the pipe.
 
         Neither process reads while we write, so a larger text would block both.
@@ -208,18 +208,18 @@ class Lockstep:
             pipe.flush()
         except BrokenPipeError:
             pass  # Its output shows the last operation that it completed.
-        kept = []
+        states = []
         for operations in portion:
             answer = answers.readline()
             if not answer:
-                raise DifferenceError(self._end(operations.said), operations.seen)
+                raise DifferenceError(self._end(operations.output), operations.seen)
             *theirs, numbers = answer.split(";")
-            for our_answer, their_answer in zip(operations.said, theirs, strict=True):
+            for our_answer, their_answer in zip(operations.output, theirs, strict=True):
                 if our_answer != their_answer:
                     raise DifferenceError(self._difference(our_answer, their_answer), operations.seen)
             number, first = map(int, numbers.split())
-            kept.append(Kept(operations.saved, number, first, operations.seen))
-        return kept
+            states.append(SavedLoops(operations.saved, number, first, operations.seen))
+        return states
 
     def _say(self, operation: str, result: bool) -> None:
         state = self.loop.state
@@ -227,21 +227,21 @@ class Lockstep:
         if codes is None:
             values = zip(state.cells, state.layout.domains, strict=True)
             codes = self._codes[state.cells] = "".join(f" {value - domain.low}" for value, domain in values)
-        said = [operation, *self._happened, "= 1" if result else "= 0"]
+        words = [operation, *self._happened, "= 1" if result else "= 0"]
         if self.loop.timers.exist:
             wait = self.loop.timers.wait
-            said.append(str(_NEVER if wait is None else wait))
-        self._said.append(" ".join(said) + codes)
+            words.append(str(_NEVER if wait is None else wait))
+        self._output.append(" ".join(words) + codes)
         self._happened.clear()
 
     def _difference(self, ours: str, theirs: str) -> str:
-        events = [", ".join(self._told(line)) or "nothing happens" for line in (theirs, ours)]
+        events = [", ".join(self._answer(line)) or "nothing happens" for line in (theirs, ours)]
         if events[0] == events[1]:
             events = ["the state is another one, or the time of the next call", "not"]
         where = OPERATIONS.get(ours[0], "")
         return f"in the control loop of {TEXT}, at {where}: {events[0]}; in that of the model: {events[1]}"
 
-    def _told(self, line: str) -> list[str]:
+    def _answer(self, line: str) -> list[str]:
         words = line.partition("=")[0].split()[1:]
         known = (word.isdigit() and int(word) < len(self.names) for word in words)
         return [
@@ -249,9 +249,9 @@ class Lockstep:
             for word, is_event in zip(words, known, strict=True)
         ]
 
-    def _end(self, said: Sequence[str]) -> str:
+    def _end(self, lines: Sequence[str]) -> str:
         status = self._follower.wait()
         endless = sys.platform != "win32" and status == -signal.SIGALRM
         how = "does not come to an end" if endless else f"ends with status {status}"
-        where = ", ".join(OPERATIONS[line[0]] for line in said) or "the start"
+        where = ", ".join(OPERATIONS[line[0]] for line in lines) or "the start"
         return f"the control loop of {TEXT} {how}, at one of these: {where}"

@@ -10,18 +10,18 @@ from functools import partial
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from robosc.analysis.system import counted
-from robosc.analysis.verify.loop import ControlLoop, asked_of_the_loop
+from robosc.analysis.system import format_count
+from robosc.analysis.verify.loop import LoopModel, require_loop_states
 from robosc.analysis.verify.response import bounded_response, confluence, finite_response
 from robosc.analysis.verify.verdict import Outcome, Verdict, trace_step
-from robosc.analysis.wording import listed, name, words
+from robosc.analysis.wording import join_with_and, name, words
 from robosc.model import expression as ex
 from robosc.model import sct
 from robosc.model.places import place
 from robosc.model.semantics.printing import RobotPrinter
 from robosc.model.semantics.roles import event_name, is_from_cif, plant_of
-from robosc.model.semantics.walks import copied
-from robosc.synthesis.encoding import referenced
+from robosc.model.semantics.walks import copy_tree
+from robosc.synthesis.encoding import referenced_elements
 from robosc.synthesis.fixpoint import coreachable, supervise
 from robosc.synthesis.relation import required_moves, steps
 
@@ -59,10 +59,10 @@ def properties(system: GuardedSystem) -> list[Callable[[], Verdict]]:
         partial(non_blocking, system),
         partial(controllability, system),
         *([] if stepwise else [partial(input_enabledness, system)]),
-        *(partial(_stated, requirement_holds, system, stated) for stated in written),
+        *(partial(_examine_statement, requirement_holds, system, statement) for statement in written),
         *([partial(ranges, system)] if len(written) < len(system.model.requirements) else []),
-        *(partial(_stated, invariant_holds, system, stated) for stated in system.model.invariants),
-        *(partial(_stated, claim_holds, system, stated) for stated in system.model.properties),
+        *(partial(_examine_statement, invariant_holds, system, statement) for statement in system.model.invariants),
+        *(partial(_examine_statement, claim_holds, system, statement) for statement in system.model.properties),
         *([] if stepwise else [partial(no_dead_events, system)]),
         *([] if stepwise or not _cancelable(system) else [partial(cancel_when_due, system)]),
         partial(maximal_permissiveness, system),
@@ -71,7 +71,7 @@ def properties(system: GuardedSystem) -> list[Callable[[], Verdict]]:
 
 
 def _in_the_loop(system: GuardedSystem) -> list[Callable[[], Verdict]]:
-    loop = ControlLoop(system)
+    loop = LoopModel(system)
     return [
         partial(finite_response, system),
         partial(bounded_response, system),
@@ -86,7 +86,7 @@ def non_blocking(system: GuardedSystem) -> Verdict:
     marked = states & system.encoding.all_marked
     blocked = states & ~coreachable(system.diagrams, steps(system.moves), marked, states)
     if not blocked.satisfiable():
-        marks = counted(system.encoding.count(marked), "of them marked").removesuffix("s")
+        marks = format_count(system.encoding.count(marked), "of them marked").removesuffix("s")
         return Verdict("non-blocking", Outcome.PROVED, f"{system.size}, {marks}")
     path = system.path_to(blocked)
     explanation = _stuck(system.never_marked(path.states[-1]), path.states[-1])
@@ -106,7 +106,7 @@ def controllability(system: GuardedSystem) -> Verdict:
         who = " or ".join([*parts, "its guard"] if relation.event in system.guards else parts)
         return f"{words(relation.event)} cannot be prevented, but {who} forbids it here"
 
-    evidence = f"{system.size}, {counted(len(uncontrollable), 'uncontrollable event')}"
+    evidence = f"{system.size}, {format_count(len(uncontrollable), 'uncontrollable event')}"
     return _nowhere("controllability", system, evidence, forbidden, explanation)
 
 
@@ -133,13 +133,15 @@ def input_enabledness(system: GuardedSystem) -> Verdict:
         location = plant.locations[path.states[-1][plant]].name
         return f"{words(event)} can come, but `{name(plant)}` has no transition for it in `{location}`"
 
-    evidence = f"{system.size}, {counted(len(inputs), 'event')}"
+    evidence = f"{system.size}, {format_count(len(inputs), 'event')}"
     return _nowhere("input-enabledness", system, evidence, blocking, explanation)
 
 
-def _stated(examine: Callable[[GuardedSystem, Any], Verdict], system: GuardedSystem, stated: Any) -> Verdict:
+def _examine_statement(
+    examine: Callable[[GuardedSystem, Any], Verdict], system: GuardedSystem, statement: Any
+) -> Verdict:
     """Return the verdict on a statement of the robot model, with its identifier."""
-    return replace(examine(system, stated), requirement=requirement_identifier(stated))
+    return replace(examine(system, statement), requirement=requirement_identifier(statement))
 
 
 def requirement_identifier(requirement: sct.StatedRequirement) -> str:
@@ -152,10 +154,10 @@ def requirement_identifier(requirement: sct.StatedRequirement) -> str:
 
 def requirement_name(requirement: sct.StatedRequirement) -> str:
     """Return the text of the requirement in the robot model, with its line."""
-    said = requirement.text or "requirement"
+    name = requirement.text or "requirement"
     if isinstance(requirement, sct.Requirement) and not requirement.text:
-        said = f"requirement on {event_name(requirement.event)}"
-    return f"{said} (line {requirement.source.span.line})" if requirement.source else said
+        name = f"requirement on {event_name(requirement.event)}"
+    return f"{name} (line {requirement.source.span.line})" if requirement.source else name
 
 
 def requirement_holds(system: GuardedSystem, requirement: sct.Requirement) -> Verdict:
@@ -164,18 +166,18 @@ def requirement_holds(system: GuardedSystem, requirement: sct.Requirement) -> Ve
     The evidence shows the proved condition of the model, which was derived from the author's text.
     """
     relation = system.relations[requirement.event]
-    condition = copied(requirement.condition)
-    wanted = requirement.kind == sct.RequirementKind.needs
-    asked = RobotPrinter()(condition if wanted else ex.Negation(operand=condition))
+    condition = copy_tree(requirement.condition)
+    is_needed = requirement.kind == sct.RequirementKind.needs
+    condition_text = RobotPrinter()(condition if is_needed else ex.Negation(operand=condition))
     happens = system.controlled & system.allowed[requirement.event]
-    states = counted(system.encoding.count(happens), "state")
+    states = format_count(system.encoding.count(happens), "state")
 
     def explanation(_: EventRelation, path: Path) -> str:
-        where = system.where(path.states[-1], referenced(requirement.condition))
+        where = system.where(path.states[-1], referenced_elements(requirement.condition))
         return f"{words(requirement.event)} can happen" + (f" where `{where}`" if where else "")
 
-    evidence = f"happens in {states}, requires `{asked}`"
-    broken = {relation: happens & ~relation.asked[requirement]}
+    evidence = f"happens in {states}, requires `{condition_text}`"
+    broken = {relation: happens & ~relation.permissions[requirement]}
     return _nowhere(
         requirement_name(requirement), system, evidence, broken, explanation, last=lambda relation: relation.event
     )
@@ -183,18 +185,18 @@ def requirement_holds(system: GuardedSystem, requirement: sct.Requirement) -> Ve
 
 def ranges(system: GuardedSystem) -> Verdict:
     """Check that no event in a reachable state can move a variable out of its range."""
-    kept = [requirement for requirement in system.model.requirements if requirement.ranges]
+    requirements = [requirement for requirement in system.model.requirements if requirement.ranges]
     leaving = {
         requirement: system.controlled & system.allowed[requirement.event] & ~system.encoding.permits(requirement)
-        for requirement in kept
+        for requirement in requirements
     }
 
     def explanation(requirement: sct.Requirement, path: Path) -> str:
-        at = system.where(path.states[-1], referenced(requirement.condition))
-        variables = listed([f"`{own.name}`" for own in requirement.ranges])
+        at = system.where(path.states[-1], referenced_elements(requirement.condition))
+        variables = join_with_and([f"`{own.name}`" for own in requirement.ranges])
         return f"{words(requirement.event)} sets {variables} to values out of range" + (f" where `{at}`" if at else "")
 
-    evidence = f"{system.size}, {counted(len(kept), 'edge')} that could leave their ranges"
+    evidence = f"{system.size}, {format_count(len(requirements), 'edge')} that could leave their ranges"
     return _nowhere("ranges", system, evidence, leaving, explanation, last=lambda requirement: requirement.event)
 
 
@@ -202,7 +204,7 @@ def invariant_holds(system: GuardedSystem, invariant: sct.StateInvariant | sct.I
     """Check that the condition of an invariant holds in every reachable state."""
 
     def explanation(_: object, path: Path) -> str:
-        return f"it is violated where `{system.where(path.states[-1], referenced(invariant.condition))}`"
+        return f"it is violated where `{system.where(path.states[-1], referenced_elements(invariant.condition))}`"
 
     evidence = f"{system.size}, requires `{RobotPrinter()(invariant.condition)}`"
     broken = {invariant: system.controlled & ~system.encoding.holds(invariant.condition)}
@@ -217,24 +219,24 @@ def claim_holds(system: GuardedSystem, claimed: sct.Property) -> Verdict:
     states = system.controlled
     start, goal = states & system.encoding.holds(claimed.premise), states & system.encoding.holds(claimed.condition)
     stuck = {claimed: start & ~coreachable(system.diagrams, steps(system.moves), goal, states)}
-    asked = RobotPrinter()(claimed.condition)
+    condition_text = RobotPrinter()(claimed.condition)
 
     def explanation(_: object, path: Path) -> str:
-        read = [*referenced(claimed.premise), *referenced(claimed.condition)]
-        return f"from `{system.where(path.states[-1], read)}` no state with `{asked}` can be reached"
+        elements = [*referenced_elements(claimed.premise), *referenced_elements(claimed.condition)]
+        return f"from `{system.where(path.states[-1], elements)}` no state with `{condition_text}` can be reached"
 
-    origin = counted(system.encoding.count(start), "state")
-    return _nowhere(requirement_name(claimed), system, f"from {origin} to `{asked}`", stuck, explanation)
+    origin = format_count(system.encoding.count(start), "state")
+    return _nowhere(requirement_name(claimed), system, f"from {origin} to `{condition_text}`", stuck, explanation)
 
 
 def no_dead_events(system: GuardedSystem) -> Verdict:
     """Check that each trigger, each silent transition and each reset can happen in some reachable state."""
     events = [event for event in system.relations if event.kind in _LIVE]
     dead = [event for event in events if not (system.controlled & system.allowed[event]).satisfiable()]
-    evidence = f"{system.size}, {counted(len(events), 'event')}"
+    evidence = f"{system.size}, {format_count(len(events), 'event')}"
     if not dead:
         return Verdict("no dead events", Outcome.PROVED, evidence)
-    explanation = f"{listed([words(event) for event in dead])} can never happen"
+    explanation = f"{join_with_and([words(event) for event in dead])} can never happen"
     return Verdict("no dead events", Outcome.REFUTED, evidence, explanation)
 
 
@@ -243,14 +245,14 @@ def _cancelable(system: GuardedSystem) -> dict[sct.Event, sct.Event]:
 
     An order, a count or an automaton refuses a start, but never cancels.
     """
-    found = {}
+    start_by_cancel = {}
     for event in system.relations:
         if event.kind == sct.EventKind.cancel:
             starts = (start for start in plant_of(event).events if start.kind == sct.EventKind.trigger)
             for start in starts:
                 if any(requirement.automaton is None for requirement in system.relations[start].requirements):
-                    found[event] = start
-    return found
+                    start_by_cancel[event] = start
+    return start_by_cancel
 
 
 def cancel_when_due(system: GuardedSystem) -> Verdict:
@@ -260,7 +262,7 @@ def cancel_when_due(system: GuardedSystem) -> Verdict:
         cancel: system.controlled
         & system.relations[cancel].enabled_by[plant_of(cancel)]
         & ~system.diagrams.all_of(
-            holds for requirement, holds in system.relations[start].asked.items() if requirement.automaton is None
+            holds for requirement, holds in system.relations[start].permissions.items() if requirement.automaton is None
         )
         & ~system.allowed[cancel]
         for cancel, start in cancels.items()
@@ -269,7 +271,7 @@ def cancel_when_due(system: GuardedSystem) -> Verdict:
     def explanation(cancel: sct.Event, _path: Path) -> str:
         return f"a requirement on the start of `{name(plant_of(cancel))}` does not hold, and its cancel cannot happen"
 
-    evidence = f"{system.size}, {counted(len(cancels), 'action')} that requirements cancel"
+    evidence = f"{system.size}, {format_count(len(cancels), 'action')} that requirements cancel"
     return _nowhere("cancel when due", system, evidence, held_back, explanation)
 
 
@@ -285,14 +287,14 @@ def maximal_permissiveness(system: GuardedSystem) -> Verdict:
     def explanation(relation: EventRelation, _path: Path) -> str:
         return f"{words(relation.event)} is forbidden here without a reason"
 
-    evidence = f"{system.size}, {counted(len(controllable), 'controllable event')}"
+    evidence = f"{system.size}, {format_count(len(controllable), 'controllable event')}"
     return _nowhere(
         "maximal permissiveness", system, evidence, needless, explanation, last=lambda relation: relation.event
     )
 
 
-@asked_of_the_loop("non-blocking in the control loop")
-def non_blocking_in_the_loop(loop: ControlLoop) -> Verdict:
+@require_loop_states("non-blocking in the control loop")
+def non_blocking_in_the_loop(loop: LoopModel) -> Verdict:
     """Check that the control loop can always reach a state that is marked and quiescent.
 
     If some events have precedence, a nonblocking system may stay in these events forever, or always take the same
@@ -302,7 +304,7 @@ def non_blocking_in_the_loop(loop: ControlLoop) -> Verdict:
     """
     system, question = loop.system, "non-blocking in the control loop"
     blocked = loop.states & ~loop.coreachable(loop.quiescent & system.encoding.all_marked)
-    evidence = counted(system.encoding.count(loop.states), "state")
+    evidence = format_count(system.encoding.count(loop.states), "state")
     if not blocked.satisfiable():
         return Verdict(question, Outcome.PROVED, evidence)
     path = loop.path_to(blocked)

@@ -12,8 +12,8 @@ from itertools import chain, combinations
 from typing import TYPE_CHECKING
 
 from robosc.analysis.paths import shortest_path
-from robosc.analysis.system import counted
-from robosc.analysis.verify.loop import asked_of_the_loop
+from robosc.analysis.system import format_count
+from robosc.analysis.verify.loop import require_loop_states
 from robosc.analysis.verify.verdict import Outcome, Verdict, trace_step
 from robosc.synthesis.encoding import pick
 from robosc.synthesis.fixpoint import coreachable
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from robosc.analysis.paths import Path, TraceStep
     from robosc.analysis.system import GuardedSystem
-    from robosc.analysis.verify.loop import ControlLoop
+    from robosc.analysis.verify.loop import LoopModel
     from robosc.model import sct
     from robosc.synthesis.bdd import Diagram
     from robosc.synthesis.encoding import Element
@@ -37,43 +37,43 @@ _GIVEN_UP = "silent events take too many steps to count before they end"
 _EFFORT = 20_000_000
 #: Maximum number of resets of failed calls among dependent internal events. All combinations of held-back resets are
 #: examined.
-_HELD = 6
+_MOST_WITHHELD = 6
 
 
 def finite_response(system: GuardedSystem) -> Verdict:
     """Check that internal events can happen forever from no reachable state."""
-    found = system.completion
-    evidence = f"{system.size}, {counted(len(system.internal), 'silent event')}"
-    if found.divergent.satisfiable():
-        stem, cycle = _lasso(system, found.divergent)
+    completion = system.completion
+    evidence = f"{system.size}, {format_count(len(system.internal), 'silent event')}"
+    if completion.divergent.satisfiable():
+        stem, cycle = _lasso(system, completion.divergent)
         explanation = (
-            f"{counted(len(cycle), 'silent event')} can happen again and again, and no other event happens then"
+            f"{format_count(len(cycle), 'silent event')} can happen again and again, and no other event happens then"
         )
         return Verdict(FINITE, Outcome.REFUTED, evidence, explanation, stem, cycle)
-    if found.bound is None:
+    if completion.bound is None:
         return Verdict(FINITE, Outcome.SKIPPED, evidence, _GIVEN_UP)
     return Verdict(FINITE, Outcome.PROVED, evidence)
 
 
 def bounded_response(system: GuardedSystem) -> Verdict:
     """Check that there is a bound on consecutive internal events, and that the supervisor's bound is right."""
-    found = system.completion
-    if found.divergent.satisfiable():
+    completion = system.completion
+    if completion.divergent.satisfiable():
         return Verdict(
             BOUNDED, Outcome.REFUTED, system.size, "silent events need not come to rest: see finite response"
         )
-    if found.bound is None:
+    if completion.bound is None:
         return Verdict(BOUNDED, Outcome.SKIPPED, system.size, _GIVEN_UP)
-    said = system.supervisor.settlingBound
-    most = found.bound if said is None else said
+    stored_bound = system.supervisor.settlingBound
+    most = completion.bound if stored_bound is None else stored_bound
     longer = _longer(system, most)
     if longer is not None and longer.satisfiable():
         path = system.path_to(longer)
         run = _run(system, path.states[-1], most + 1)
-        explanation = f"according to the supervisor, at most {counted(most, 'silent event')} happen in a row"
+        explanation = f"according to the supervisor, at most {format_count(most, 'silent event')} happen in a row"
         return Verdict(BOUNDED, Outcome.REFUTED, system.size, explanation, system.trace(path), run)
-    bound = min(most, found.bound)
-    return Verdict(BOUNDED, Outcome.PROVED, f"{system.size}, at most {counted(bound, 'silent event')} in a row")
+    bound = min(most, completion.bound)
+    return Verdict(BOUNDED, Outcome.PROVED, f"{system.size}, at most {format_count(bound, 'silent event')} in a row")
 
 
 def _longer(system: GuardedSystem, most: int) -> Diagram | None:
@@ -144,26 +144,26 @@ def _after(internal: InternalEvent, states: Diagram) -> Diagram:
     return states & internal.allowed if internal.step is None else internal.step.image(states)
 
 
-@asked_of_the_loop(CONFLUENCE)
-def confluence(loop: ControlLoop) -> Verdict:
+@require_loop_states(CONFLUENCE)
+def confluence(loop: LoopModel) -> Verdict:
     """Check that internal events lead from every state of the control loop to at most one quiescent state.
 
     Independent events cannot lead to different states by a different order, so each group is examined separately.
     """
     system = loop.system
-    quiescent = counted(system.encoding.count(loop.quiescent), "of them at rest").removesuffix("s")
-    evidence = f"{counted(system.encoding.count(loop.states), 'state')}, {quiescent}"
+    quiescent = format_count(system.encoding.count(loop.quiescent), "of them at rest").removesuffix("s")
+    evidence = f"{format_count(system.encoding.count(loop.states), 'state')}, {quiescent}"
     skipped = False
     for group in independent_groups(system.internal):
-        held = {event.relation.event: loop.held(event.relation.event) for event in group}
-        resets = [event for event, states in held.items() if states.satisfiable()]
+        withheld = {event.relation.event: loop.withheld(event.relation.event) for event in group}
+        resets = [event for event, states in withheld.items() if states.satisfiable()]
         # A single event has no order.
         if len(group) == 1:
             continue
-        skipped = skipped or len(resets) > _HELD
-        for chosen in _subsets(resets[:_HELD]):
+        skipped = skipped or len(resets) > _MOST_WITHHELD
+        for chosen in _subsets(resets[:_MOST_WITHHELD]):
             ends = _Ends(
-                loop, [_held_back(event, held) if event.relation.event in chosen else event for event in group]
+                loop, [_held_back(event, withheld) if event.relation.event in chosen else event for event in group]
             )
             if ends.several.satisfiable():
                 return ends.verdict(evidence)
@@ -176,16 +176,16 @@ def _subsets(events: Sequence[sct.Event]) -> Iterator[tuple[sct.Event, ...]]:
     return chain.from_iterable(combinations(events, size) for size in range(len(events) + 1))
 
 
-def _held_back(internal: InternalEvent, held: Mapping[sct.Event, Diagram]) -> InternalEvent:
+def _held_back(internal: InternalEvent, withheld: Mapping[sct.Event, Diagram]) -> InternalEvent:
     """Return a reset that happens only in states in which nothing holds it back."""
-    allowed = internal.allowed & ~held[internal.relation.event]
+    allowed = internal.allowed & ~withheld[internal.relation.event]
     return replace(internal, allowed=allowed, step=internal.relation.step_where(allowed))
 
 
 class _Ends:
     """Final states of dependent internal events that happen in any order."""
 
-    def __init__(self, loop: ControlLoop, events: Sequence[InternalEvent]) -> None:
+    def __init__(self, loop: LoopModel, events: Sequence[InternalEvent]) -> None:
         self._loop = loop
         self._moves = [(event.relation, event.step) for event in events if event.step is not None]
         self._quiescent = loop.states & ~loop.system.diagrams.any_of(event.allowed for event in events)

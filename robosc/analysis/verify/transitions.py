@@ -44,10 +44,10 @@ class Transition:
 def of_system(system: GuardedSystem) -> dict[sct.Event, Transition]:
     """Return the events of a model under its supervisor, in the order of the plants."""
     edges = edges_by_event(system.model.plants)
-    made = {
+    transitions = {
         event: together(edges.get(event, {}).values(), system.encoding, saturates=True) for event in system.relations
     }
-    return {event: Transition(system.allowed[event], transition.after) for event, transition in made.items()}
+    return {event: Transition(system.allowed[event], transition.after) for event, transition in transitions.items()}
 
 
 def together(automata: Iterable[Sequence[sct.Edge]], encoding: Encoding, *, saturates: bool) -> Transition:

@@ -64,7 +64,7 @@ class Verdict:
     requirement: str = ""
 
 
-def timed(examine: Callable[P, Verdict], *arguments: P.args, **named: P.kwargs) -> Verdict:
+def measure(examine: Callable[P, Verdict], *arguments: P.args, **named: P.kwargs) -> Verdict:
     """Return the verdict of an examination with its seconds."""
     began = perf_counter()
     return replace(examine(*arguments, **named), seconds=perf_counter() - began)
@@ -169,8 +169,8 @@ def details(verdict: Verdict, model: sct.SupervisoryControlModel) -> str:
 
 
 def _numbered(heading: str, steps: Sequence[TraceStep], model: sct.SupervisoryControlModel) -> list[str]:
-    said = [f"    {number}. {in_words([step], model)}" for number, step in enumerate(steps, 1)]
-    return [f"  {heading}", *said]
+    steps_in_words = [f"    {number}. {in_words([step], model)}" for number, step in enumerate(steps, 1)]
+    return [f"  {heading}", *steps_in_words]
 
 
 def summary(verdicts: Sequence[Verdict]) -> str:

@@ -111,15 +111,15 @@ def in_order(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
     """Return each finding once, sorted by file, position and rule; causes come before their consequences."""
     return sorted(
         dict.fromkeys(findings),
-        key=lambda found: (
-            found.file,
-            found.follows,
-            found.span,
-            found.rule,
-            found.message,
-            found.hint or "",
-            found.edits,
-            found.alternatives,
+        key=lambda finding: (
+            finding.file,
+            finding.follows,
+            finding.span,
+            finding.rule,
+            finding.message,
+            finding.hint or "",
+            finding.edits,
+            finding.alternatives,
         ),
     )
 

@@ -24,12 +24,12 @@ def render(findings: Iterable[Diagnostic], version: str) -> str:
     Regions count columns in code points. Edits become fixes, and so does each alternative. Rules with findings have the
     description of their page.
     """
-    found = in_order(findings)
-    rules = sorted({finding.rule for finding in found})
+    ordered = in_order(findings)
+    rules = sorted({finding.rule for finding in ordered})
     run = {
         "tool": {"driver": {"name": "robosc", "version": version, "rules": [_rule(rule) for rule in rules]}},
         "columnKind": "unicodeCodePoints",
-        "results": [_result(finding, rules.index(finding.rule)) for finding in found],
+        "results": [_result(finding, rules.index(finding.rule)) for finding in ordered],
     }
     return json.dumps({"$schema": _SCHEMA, "version": "2.1.0", "runs": [run]}, indent=2) + "\n"
 

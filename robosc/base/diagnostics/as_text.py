@@ -35,19 +35,19 @@ def render(findings: Iterable[Diagnostic], texts: Mapping[str, str], paint: Call
     output. The text is empty for no findings, else it ends with a line break. At most `MOST` findings are shown, errors
     before warnings, followed by the number of the others.
     """
-    found = in_order(findings)
-    shown = in_order(sorted(found, key=lambda finding: finding.severity is not Severity.ERROR)[:MOST])
+    ordered = in_order(findings)
+    shown = in_order(sorted(ordered, key=lambda finding: finding.severity is not Severity.ERROR)[:MOST])
     lines = {file: texts[file].split("\n") for file in {finding.file for finding in shown} if file in texts}
     parts = [_render(finding, lines.get(finding.file, []), paint) for finding in shown]
-    if len(found) > len(shown):
-        parts.append(f"{len(found) - len(shown)} more are not shown: `robosc check --format json` prints all\n")
+    if len(ordered) > len(shown):
+        parts.append(f"{len(ordered) - len(shown)} more are not shown: `robosc check --format json` prints all\n")
     return "".join(parts)
 
 
 def summary(findings: Iterable[Diagnostic]) -> str:
     """Return the number of errors and warnings, such as `2 errors, 1 warning`; empty for none."""
-    found = in_order(findings)
-    counts = [(sum(finding.severity is severity for finding in found), severity.value) for severity in Severity]
+    ordered = in_order(findings)
+    counts = [(sum(finding.severity is severity for finding in ordered), severity.value) for severity in Severity]
     return ", ".join(f"{count} {word}{'s' if count > 1 else ''}" for count, word in counts if count)
 
 
@@ -55,17 +55,17 @@ def _render(finding: Diagnostic, lines: list[str], paint: Callable[[Part, str], 
     place = f"{visible(finding.file)}:{finding.span.line}:{finding.span.column}:"
     severity: Part = "error" if finding.severity is Severity.ERROR else "warning"
     head = f"{paint('place', place)} {paint(severity, f'{severity}:')}"
-    shown = [f"{head} {_told(finding.message)} {paint('rule', f'[{finding.rule}]')}"]
+    shown = [f"{head} {_escape(finding.message)} {paint('rule', f'[{finding.rule}]')}"]
     if finding.span.line <= len(lines):
-        line, carets = underlined(finding, lines[finding.span.line - 1])
+        line, carets = underline(finding, lines[finding.span.line - 1])
         indent = len(carets) - len(carets.lstrip())
         shown += [_MARGIN + line, _MARGIN + carets[:indent] + paint("caret", carets[indent:])]
     if finding.hint:
-        shown.append(f"{_MARGIN}{paint('hint', 'hint:')} {_told(finding.hint)}")
+        shown.append(f"{_MARGIN}{paint('hint', 'hint:')} {_escape(finding.hint)}")
     return "\n".join(shown) + "\n"
 
 
-def underlined(finding: Diagnostic, line: str) -> tuple[str, str]:
+def underline(finding: Diagnostic, line: str) -> tuple[str, str]:
     """Return the first line of a finding as a terminal shows it, and the carets under its span.
 
     Tabs are expanded. A wide character takes two columns and a combining one none. If the span has several lines, the
@@ -98,7 +98,7 @@ def _shown(text: str) -> str:
     return "".join(shown)
 
 
-def _told(text: str) -> str:
+def _escape(text: str) -> str:
     return visible(text if len(text) <= _LONGEST_TEXT else f"{text[:_LONGEST_TEXT]} …")
 
 

@@ -33,7 +33,7 @@ def json_value(text: str) -> Any:
     Raises JsonError, also if it nests too deeply or a number is too large.
     """
     # `json` recurses for any number of brackets, until the process crashes.
-    opened = (_BRACKETS.get(found[0], 0) for found in _STRING_OR_BRACKET.finditer(text))
+    opened = (_BRACKETS.get(match[0], 0) for match in _STRING_OR_BRACKET.finditer(text))
     if max(accumulate(opened, initial=0)) > _DEEPEST:
         raise JsonError("nested too deeply")
     try:

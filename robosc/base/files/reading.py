@@ -27,7 +27,7 @@ _KINDS = {
 }
 
 _Identity = tuple[int, int]
-#: Inputs that were read within `noting`: from their identity to the path by which each was named.
+#: Inputs that were read within `record_inputs`: from their identity to the path by which each was named.
 _noted: ContextVar[dict[_Identity, str] | None] = ContextVar("noted", default=None)
 
 
@@ -37,12 +37,12 @@ def read(path: str | os.PathLike[str], *, is_input: bool = True) -> bytes:
     Raises OSError if the file cannot be read, is not regular (then it is not opened), or has more than MOST_BYTES.
     """
     name = os.fspath(path)
-    with opened(name, is_input=is_input, buffering=0) as file:
+    with open_file(name, is_input=is_input, buffering=0) as file:
         return _bounded(file, name)
 
 
 @contextmanager
-def opened(path: str | os.PathLike[str], *, is_input: bool = True, buffering: int = -1) -> Iterator[IO[bytes]]:
+def open_file(path: str | os.PathLike[str], *, is_input: bool = True, buffering: int = -1) -> Iterator[IO[bytes]]:
     """Open a regular file of any size for binary reading; `is_input` is as for `read`. Raises OSError."""
     name = os.fspath(path)
     try:
@@ -52,11 +52,11 @@ def opened(path: str | os.PathLike[str], *, is_input: bool = True, buffering: in
     except ValueError as error:  # The path contains a null character.
         raise OSError(errno.EINVAL, str(error), name) from None
     with os.fdopen(descriptor, "rb", buffering=buffering) as file:
-        found = os.fstat(descriptor)
-        _require_regular(found, name)
+        status = os.fstat(descriptor)
+        _require_regular(status, name)
         noted = _noted.get()
         if is_input and noted is not None:
-            noted[_identity(found)] = name
+            noted[_identity(status)] = name
         yield file
 
 
@@ -69,7 +69,7 @@ def read_stdin(name: str) -> bytes:
 
 
 @contextmanager
-def noting() -> Iterator[None]:
+def record_inputs() -> Iterator[None]:
     """Record the inputs that `read` reads within the `with` block, so that nothing overwrites them."""
     token = _noted.set({})
     try:
@@ -78,16 +78,16 @@ def noting() -> Iterator[None]:
         _noted.reset(token)
 
 
-def input_named(found: os.stat_result) -> str | None:
-    """Return the name by which this file was read within `noting`, or None if it was not.
+def input_name(status: os.stat_result) -> str | None:
+    """Return the name by which this file was read within `record_inputs`, or None if it was not.
 
     The file is identified by its device and inode, so that links do not hide it.
     """
-    return (_noted.get() or {}).get(_identity(found))
+    return (_noted.get() or {}).get(_identity(status))
 
 
 def inputs() -> list[str]:
-    """Return the names of all files that were read within `noting`, in the order of their first reading."""
+    """Return the names of all files that were read within `record_inputs`, in the order of their first reading."""
     return list((_noted.get() or {}).values())
 
 
@@ -96,15 +96,15 @@ def kind(mode: int) -> str:
     return _KINDS.get(stat.S_IFMT(mode), "something else")
 
 
-def _identity(found: os.stat_result) -> _Identity:
-    return found.st_dev, found.st_ino
+def _identity(status: os.stat_result) -> _Identity:
+    return status.st_dev, status.st_ino
 
 
-def _require_regular(found: os.stat_result, name: str) -> None:
-    if stat.S_ISDIR(found.st_mode):
+def _require_regular(status: os.stat_result, name: str) -> None:
+    if stat.S_ISDIR(status.st_mode):
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), name)
-    if not stat.S_ISREG(found.st_mode):
-        raise OSError(errno.EINVAL, f"this is {kind(found.st_mode)}; only regular files are read", name)
+    if not stat.S_ISREG(status.st_mode):
+        raise OSError(errno.EINVAL, f"this is {kind(status.st_mode)}; only regular files are read", name)
 
 
 def _bounded(file: IO[bytes], name: str) -> bytes:

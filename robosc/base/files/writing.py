@@ -49,7 +49,7 @@ def write(trees: Mapping[Path, Mapping[str, str]]) -> list[Path]:
     text keeps its time of change, and other files are not touched. Scripts (`#!`) become executable.
 
     Raises OutputError, before any file has changed, if a text cannot be staged; if a path leads out of its folder (by
-    `..`, an absolute path or a link) or has two texts; if a file would replace an input (`files.reading.noting`)
+    `..`, an absolute path or a link) or has two texts; if a file would replace an input (`files.reading.record_inputs`)
     or anything but a regular file; or if another process keeps writing to a folder.
     """
     with _Signals() as signals:
@@ -83,29 +83,29 @@ def write_file(path: str | os.PathLike[str], text: str) -> None:
 def refuse(path: str | os.PathLike[str]) -> None:
     """Raise OutputError if `write_file` would refuse a path because of the file that exists there."""
     try:
-        found = Path(path).stat()
+        status = Path(path).stat()
     except FileNotFoundError:
         return
     except (OSError, ValueError) as error:
         raise OutputError(_reason(error) if isinstance(error, OSError) else str(error)) from error
-    if stat.S_ISCHR(found.st_mode) or stat.S_ISFIFO(found.st_mode):
+    if stat.S_ISCHR(status.st_mode) or stat.S_ISFIFO(status.st_mode):
         return
-    _refuse_existing(Path(path), found)
+    _refuse_existing(Path(path), status)
 
 
 def open_log(path: str | os.PathLike[str]) -> int:
     """Open a file for appending lines, and return its descriptor.
 
     The file may also be a character device, or a pipe with a reader. Raises OSError, also if the file was read within
-    `robosc.base.files.reading.noting`.
+    `robosc.base.files.reading.record_inputs`.
     """
-    wanted = os.O_WRONLY | os.O_APPEND | os.O_CREAT | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_NOCTTY", 0)
-    descriptor = os.open(path, wanted | getattr(os, "O_NONBLOCK", 0), 0o666)
-    found = os.fstat(descriptor)
+    flags = os.O_WRONLY | os.O_APPEND | os.O_CREAT | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_NOCTTY", 0)
+    descriptor = os.open(path, flags | getattr(os, "O_NONBLOCK", 0), 0o666)
+    status = os.fstat(descriptor)
     fault = None
-    if not any(test(found.st_mode) for test in (stat.S_ISREG, stat.S_ISCHR, stat.S_ISFIFO)):
-        fault = f"this is {reading.kind(found.st_mode)}, no file for a log"
-    elif reading.input_named(found) is not None:
+    if not any(test(status.st_mode) for test in (stat.S_ISREG, stat.S_ISCHR, stat.S_ISFIFO)):
+        fault = f"this is {reading.kind(status.st_mode)}, no file for a log"
+    elif reading.input_name(status) is not None:
         fault = "this call has read it: it cannot be the log, too"
     if fault is not None:
         os.close(descriptor)
@@ -135,9 +135,9 @@ def _write(trees: Mapping[Path, Mapping[str, str]], signals: _Signals) -> list[P
             if texts.setdefault(path, text) != text:
                 raise OutputError(f"{path} would be written twice, with different texts")
             placed.setdefault(folder, {})[path] = text
-    with ExitStack() as made, ExitStack() as locks:
+    with ExitStack() as new_folders, ExitStack() as locks:
         for folder in sorted(placed):
-            locks.enter_context(_locked(folder, made, signals))
+            locks.enter_context(_locked(folder, new_folders, signals))
             _remove_left_over(folder)
         changed = {
             folder: {path: text.encode() for path, text in files.items() if not _is(path, text.encode())}
@@ -146,7 +146,7 @@ def _write(trees: Mapping[Path, Mapping[str, str]], signals: _Signals) -> list[P
         for path in (path for files in changed.values() for path in files):
             if os.path.lexists(path):
                 _refuse_existing(path, path.lstat())
-        _replace(changed, made, signals)
+        _replace(changed, new_folders, signals)
     return [path for files in changed.values() for path in files]
 
 
@@ -161,28 +161,28 @@ def _inside(folder: Path, name: str) -> Path:
     return path
 
 
-def _refuse_existing(path: Path, found: os.stat_result) -> None:
-    if stat.S_ISDIR(found.st_mode):
+def _refuse_existing(path: Path, status: os.stat_result) -> None:
+    if stat.S_ISDIR(status.st_mode):
         raise OutputError(f"{path} is a folder: a file of that name cannot be written")
-    if not stat.S_ISREG(found.st_mode):
-        what = "a link" if stat.S_ISLNK(found.st_mode) else reading.kind(found.st_mode)
+    if not stat.S_ISREG(status.st_mode):
+        what = "a link" if stat.S_ISLNK(status.st_mode) else reading.kind(status.st_mode)
         raise OutputError(f"{path} is {what}: only a regular file can be replaced")
-    name = reading.input_named(found)
+    name = reading.input_name(status)
     if name is not None:
         also = "" if Path(name) == path else f", as {name}"
         raise OutputError(f"{path} was read by this call{also}: an input file is not overwritten")
 
 
 @contextmanager
-def _locked(folder: Path, made: ExitStack, signals: _Signals) -> Iterator[None]:
+def _locked(folder: Path, new_folders: ExitStack, signals: _Signals) -> Iterator[None]:
     """Create a folder if it is missing, and lock it against other processes that use this function."""
     if sys.platform == "win32":
-        _make(folder, made)
+        _make(folder, new_folders)
         yield
         return
     until = time.monotonic() + PATIENCE_SECONDS
     while True:
-        _make(folder, made)
+        _make(folder, new_folders)
         descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
         try:
             while not _lock(descriptor):
@@ -209,7 +209,7 @@ def _lock(descriptor: int) -> bool:
     return True
 
 
-def _replace(changed: Mapping[Path, Mapping[Path, bytes]], made: ExitStack, signals: _Signals) -> None:
+def _replace(changed: Mapping[Path, Mapping[Path, bytes]], new_folders: ExitStack, signals: _Signals) -> None:
     """Stage all files, then move each to its place; new folders stay once all files are staged."""
     with ExitStack() as stages:
         moves: list[tuple[Path, Path]] = []
@@ -221,11 +221,11 @@ def _replace(changed: Mapping[Path, Mapping[Path, bytes]], made: ExitStack, sign
                 moves += [(_staged(stage / str(number), file, files[file]), file) for number, file in enumerate(files)]
             signals.check()
         for _, path in moves:
-            _make(path.parent, made)
+            _make(path.parent, new_folders)
             if not path.parent.is_dir():
                 raise OutputError(f"{path.parent} is not a folder: {path.name} cannot be written below it")
         signals.check()
-        made.pop_all()
+        new_folders.pop_all()
         for staged, path in moves:
             staged.replace(path)
 
@@ -251,12 +251,12 @@ def _remove_left_over(folder: Path) -> None:
             shutil.rmtree(stage, ignore_errors=True)
 
 
-def _make(folder: Path, made: ExitStack) -> None:
+def _make(folder: Path, new_folders: ExitStack) -> None:
     missing = [parent for parent in (folder, *folder.parents) if not parent.exists()]
     for parent in reversed(missing):
         with suppress(FileExistsError):
             parent.mkdir()
-            made.callback(_remove_empty, parent)
+            new_folders.callback(_remove_empty, parent)
 
 
 def _remove_empty(folder: Path) -> None:
@@ -267,9 +267,9 @@ def _remove_empty(folder: Path) -> None:
 def _is(path: Path, content: bytes) -> bool:
     """Return whether a path is a regular file with this content."""
     try:
-        found = path.lstat()
+        status = path.lstat()
         # Files of the kernel claim to be empty, and reading them may block.
-        return stat.S_ISREG(found.st_mode) and found.st_size == len(content) and path.read_bytes() == content
+        return stat.S_ISREG(status.st_mode) and status.st_size == len(content) and path.read_bytes() == content
     except (FileNotFoundError, NotADirectoryError):
         return False
 

@@ -7,8 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, NamedTuple
 
-from robosc.base.files.reading import MOST_BYTES, opened
-from robosc.base.recordings.bounds import BoundError, bounded, decompressed, require_plain
+from robosc.base.files.reading import MOST_BYTES, open_file
+from robosc.base.recordings.bounds import BoundError, decompress, limit_decompression, require_plain
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -38,16 +38,18 @@ def recorded_texts(path: str) -> Iterator[RecordedText]:
 
     A truncated MCAP file, for example after a power failure, is read up to its end.
     """
-    found = Path(path)
-    if found.is_dir() and not (found / "metadata.yaml").is_file():
+    recording = Path(path)
+    if recording.is_dir() and not (recording / "metadata.yaml").is_file():
         raise RecordingError(f"{path} is a folder without a metadata.yaml: it is not a recording")
     # rosbags opens folders by itself.
-    with nullcontext() if found.is_dir() else opened(path) as file, bounded(found):
+    with nullcontext() if recording.is_dir() else open_file(path) as file, limit_decompression(recording):
         try:
-            require_plain(found)
+            require_plain(recording)
         except BoundError as error:
             raise RecordingError(f"{path} cannot be read: {error}") from None
-        yield from _read(path, _mcap_texts(file) if file is not None and found.suffix == ".mcap" else _bag_texts(found))
+        yield from _read(
+            path, _mcap_texts(file) if file is not None and recording.suffix == ".mcap" else _bag_texts(recording)
+        )
 
 
 def _read(path: str, texts: Iterator[RecordedText]) -> Iterator[RecordedText]:
@@ -73,7 +75,7 @@ def _mcap_texts(file: IO[bytes]) -> Iterator[RecordedText]:
     from mcap.records import Channel, Message, Schema  # noqa: PLC0415
     from rosbags.typesys import Stores, get_typestore  # noqa: PLC0415
 
-    read = {
+    decoders = {
         "cdr": get_typestore(Stores.ROS2_JAZZY).deserialize_cdr,
         "ros1": get_typestore(Stores.ROS1_NOETIC).deserialize_ros1,
     }
@@ -84,11 +86,11 @@ def _mcap_texts(file: IO[bytes]) -> Iterator[RecordedText]:
             match record:
                 case Schema():
                     types[record.id] = record.name
-                case Channel() if types.get(record.schema_id) in _TEXT and record.message_encoding in read:
+                case Channel() if types.get(record.schema_id) in _TEXT and record.message_encoding in decoders:
                     channels[record.id] = record
                 case Message() if record.channel_id in channels:
                     channel = channels[record.channel_id]
-                    text: Any = read[channel.message_encoding](record.data, _TEXT[1])
+                    text: Any = decoders[channel.message_encoding](record.data, _TEXT[1])
                     yield RecordedText(channel.topic, text.data)
 
 
@@ -98,8 +100,6 @@ def _mcap_records(file: IO[bytes]) -> Iterator[Any]:
 
     for record in StreamReader(file, emit_chunks=True, record_size_limit=MOST_BYTES).records:
         if isinstance(record, Chunk):
-            yield from breakup_chunk(
-                replace(record, compression="", data=decompressed(record.data, record.compression))
-            )
+            yield from breakup_chunk(replace(record, compression="", data=decompress(record.data, record.compression)))
         else:
             yield record

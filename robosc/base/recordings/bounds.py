@@ -12,7 +12,7 @@ from io import BytesIO
 from types import SimpleNamespace
 from typing import IO, TYPE_CHECKING, Any
 
-from robosc.base.files.reading import MOST_BYTES, opened
+from robosc.base.files.reading import MOST_BYTES, open_file
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -37,7 +37,7 @@ def require_plain(folder: Path) -> None:
     for path in sorted(folder.iterdir()) if folder.is_dir() else [folder]:
         if path.is_dir():
             continue
-        with opened(path):
+        with open_file(path):
             if path.suffix == ".db3":
                 _require_stored(path)
         if path.name == "metadata.yaml" and path.stat().st_size > _MOST_METADATA:
@@ -63,7 +63,7 @@ def _require_stored(path: Path) -> None:
 
 
 @contextmanager
-def bounded(path: Path) -> Iterator[None]:
+def limit_decompression(path: Path) -> Iterator[None]:
     """Limit the decompression of a recording within the `with` block: beyond its budget it raises BoundError."""
     files = [path] if path.is_file() else [file for file in path.iterdir() if file.is_file()]
     _install()
@@ -74,17 +74,17 @@ def bounded(path: Path) -> Iterator[None]:
         _budget.reset(token)
 
 
-def decompressed(data: bytes, compression: str) -> bytes:
+def decompress(data: bytes, compression: str) -> bytes:
     """Return decompressed bytes. `compression` is `zstd`, `lz4`, `bz2` or empty. Raises BoundError."""
     if not compression:
         return data
     budget = _budget.get()
-    with _opened(BytesIO(data), compression) as file:
+    with _open(BytesIO(data), compression) as file:
         if budget is None:
             return file.read()
-        found = file.read(min(budget[0], MOST_BYTES) + 1)
-    _take(len(found), min(budget[0], MOST_BYTES))
-    return found
+        content = file.read(min(budget[0], MOST_BYTES) + 1)
+    _take(len(content), min(budget[0], MOST_BYTES))
+    return content
 
 
 def _take(size: int, most: int) -> None:
@@ -112,18 +112,18 @@ class _Counted:
         self._file.close()
 
     def read(self, size: int = -1) -> bytes:
-        found = self._file.read(size)
+        content = self._file.read(size)
         budget = _budget.get()
-        _take(len(found), budget[0] if budget is not None else len(found))
-        return found
+        _take(len(content), budget[0] if budget is not None else len(content))
+        return content
 
 
-def _opened(file: IO[bytes], compression: str) -> IO[bytes]:
+def _open(file: IO[bytes], compression: str) -> IO[bytes]:
     lz4_frame = import_module("lz4.frame")  # has no types
     zstd = vars(import_module("rosbags.rosbag2.storage_mcap"))["zstd"]  # in the Python library from 3.14 on
     readers: dict[str, Any] = {"zstd": zstd.open, "lz4": lz4_frame.open, "bz2": bz2.open}
-    found: IO[bytes] = readers[compression](file, "rb")
-    return found
+    reader: IO[bytes] = readers[compression](file, "rb")
+    return reader
 
 
 def _install() -> None:
@@ -132,13 +132,13 @@ def _install() -> None:
     storage_mcap: Any = import_module("rosbags.rosbag2.storage_mcap")
     folders: Any = import_module("rosbags.rosbag2.reader")
     for name in ("bz2", "lz4"):
-        bags.decompressors[name] = partial(decompressed, compression=name)
+        bags.decompressors[name] = partial(decompress, compression=name)
     for name in ("lz4", "zstd"):
         storage_mcap.DECOMPRESSORS[name] = partial(_of_size, name)
     folders.zstd = SimpleNamespace(
-        decompress=partial(decompressed, compression="zstd"), open=lambda file, _: _Counted(_opened(file, "zstd"))
+        decompress=partial(decompress, compression="zstd"), open=lambda file, _: _Counted(_open(file, "zstd"))
     )
 
 
 def _of_size(compression: str, data: bytes, _: int) -> bytes:
-    return decompressed(data, compression)
+    return decompress(data, compression)

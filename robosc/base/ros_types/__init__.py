@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from robosc.base.files.resources import locate
 from robosc.base.ros_types.folders import MOST_FOLDERS, Share, Workspace
-from robosc.base.ros_types.wire import FOLDERS, DefinitionError, Fields, Nested, Section, Sequence, WireType
+from robosc.base.ros_types.wire import FOLDERS, DefinitionError, Fields, NestedType, Section, Sequence, WireType
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -61,27 +61,27 @@ class RosDistribution:
             return None  # Names become parts of paths.
         key = package, name, section
         if key not in self._known:
-            found = (source.fields(package, name, section) for source in self._sources)
-            self._known[key] = next((fields for fields in found if fields is not None), None)
+            definitions = (source.fields(package, name, section) for source in self._sources)
+            self._known[key] = next((fields for fields in definitions if fields is not None), None)
         return self._known[key]
 
-    def reached(
+    def type_at(
         self, package: str, name: str, section: Section, path: Iterable[str]
     ) -> tuple[WireType, Section] | None:
         """Return the type at the end of a path of fields and positions, with its section, or None if unknown."""
-        found: WireType | None = Nested(package, name)
+        wire_type: WireType | None = NestedType(package, name)
         for step in path:
             if step.isdigit():
-                found = found.at(int(step)) if isinstance(found, Sequence) else None
-            elif isinstance(found, Nested):
+                wire_type = wire_type.at(int(step)) if isinstance(wire_type, Sequence) else None
+            elif isinstance(wire_type, NestedType):
                 try:
-                    fields = self.fields(found.package, found.name, section)
+                    fields = self.fields(wire_type.package, wire_type.name, section)
                 except DefinitionError:
                     return None
-                found, section = None if fields is None else fields.get(step), Section.MESSAGE
+                wire_type, section = None if fields is None else fields.get(step), Section.MESSAGE
             else:
                 return None
-        return None if found is None else (found, section)
+        return None if wire_type is None else (wire_type, section)
 
     def defines(self, package: str, name: str, section: Section) -> bool:
         """Return whether a section of a type exists, even if its definition is invalid."""
@@ -107,7 +107,7 @@ class RosTypes:
 
     def __init__(self, paths: Iterable[str | PathLike[str]] = ()) -> None:
         """Search folders of packages below `paths` before all others."""
-        given = [Path(path) for path in paths] + _environment("ROBOSC_INTERFACE_PATH")
+        folders = [Path(path) for path in paths] + _environment("ROBOSC_INTERFACE_PATH")
         installed = {
             "ROS 2": [Share(prefix / "share") for prefix in _environment("AMENT_PREFIX_PATH")],
             "ROS 1": [
@@ -116,9 +116,10 @@ class RosTypes:
             ],
         }
         #: ROS 2, then ROS 1.
-        self._given = {ros: [Workspace(folder, ros) for folder in given] for ros in installed}
+        self._workspaces = {ros: [Workspace(folder, ros) for folder in folders] for ros in installed}
         self.distributions = [
-            RosDistribution(ros, [*self._given[ros], *shares, Share(_SHIPPED)]) for ros, shares in installed.items()
+            RosDistribution(ros, [*self._workspaces[ros], *shares, Share(_SHIPPED)])
+            for ros, shares in installed.items()
         ]
 
     def distribution(self, ros: int) -> RosDistribution:
@@ -144,7 +145,7 @@ class RosTypes:
 
         If a folder is too large to be searched, the hint is to name a smaller one.
         """
-        large = next((found.folder for found in self._given["ROS 2"] if found.is_too_large), None)
+        large = next((workspace.folder for workspace in self._workspaces["ROS 2"] if workspace.is_too_large), None)
         if large is None:
             return MAKE_KNOWN
         return (
@@ -161,7 +162,7 @@ class RosTypes:
         ]
 
     def _names(self, package: str, kind: str) -> list[str]:
-        return sorted({found for known in self.distributions for found in known.names(package, kind)})
+        return sorted({name for known in self.distributions for name in known.names(package, kind)})
 
     def why_unknown(self, package: str, name: str, section: Section) -> tuple[str, str, tuple[str, str] | None]:
         """Return the reason that no distribution has a section of a type, a hint, and the type that was probably meant.
@@ -179,7 +180,7 @@ class RosTypes:
                 message = f"{package}/{name} is of kind {other.kind}, expected a type of kind {kind}"
                 return message, f"name a type of kind {kind}", None
         if not any(known.names(package, other) for known in self.distributions for other in FOLDERS):
-            packages = {found for known in self.distributions for found in known.packages()}
+            packages = {package_name for known in self.distributions for package_name in known.packages()}
             having = sorted(other for other in packages if name in self._names(other, kind))
             close = get_close_matches(package, having, n=1, cutoff=0.8)
             make_known = self._make_known()

@@ -31,7 +31,7 @@ class Share:
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
-        self._read: dict[Path, list[Fields]] = {}
+        self._fields: dict[Path, list[Fields]] = {}
 
     def fields(self, package: str, name: str, section: Section) -> Fields | None:
         """Return the fields of a section of a type, or None if the folder has no such type.
@@ -41,11 +41,11 @@ class Share:
         folder = FOLDERS[section.kind]
         for root in self.roots(package):
             path = root / folder / f"{name}.{folder}"
-            if path not in self._read:
+            if path not in self._fields:
                 if not path.exists():
                     continue
-                self._read[path] = _sections(path, package, section)
-            return self._read[path][section.index]
+                self._fields[path] = _sections(path, package, section)
+            return self._fields[path][section.index]
         return None
 
     def names(self, package: str, kind: str) -> list[str]:
@@ -92,7 +92,7 @@ class Workspace(Share):
     @cached_property
     def _roots(self) -> dict[str, list[Path]]:
         packages: dict[str, list[Path]] = {}
-        for name, root in self._found():
+        for name, root in self._definitions():
             packages.setdefault(name, []).append(root)
         return packages
 
@@ -107,7 +107,7 @@ class Workspace(Share):
         _ = self._roots
         return self._searched > MOST_FOLDERS
 
-    def _found(self) -> Iterator[tuple[str, Path]]:
+    def _definitions(self) -> Iterator[tuple[str, Path]]:
         seen = set()
         for folder, below, names in os.walk(self._folder, followlinks=True):  # as the tools of ROS do
             checkpoint()

@@ -18,7 +18,7 @@ from robosc.base.ros_types.wire import (
     Basic,
     DefinitionError,
     Fields,
-    Nested,
+    NestedType,
     Section,
     Sequence,
     Value,
@@ -89,7 +89,7 @@ def _wire_type(description: tuple[Nodetype, Any], default: Any = None) -> WireTy
         case Nodetype.NAME:
             package, *_, name = details.split("/")
             # The parser treats `wstring` as a type of this package.
-            return Basic(name) if name == "wstring" else Nested(package, name)
+            return Basic(name) if name == "wstring" else NestedType(package, name)
         case Nodetype.ARRAY:
             length = details[1]
         case _:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
-from robosc.base.ros_types.wire import DefinitionError, Nested, Section, Sequence
+from robosc.base.ros_types.wire import DefinitionError, NestedType, Section, Sequence
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -22,13 +22,13 @@ def unknown_field(
     from index to element.
     """
     known = list(distributions)
-    pending: list[tuple[WireType, Section, Any]] = [(Nested(package, name), section, data)]
+    pending: list[tuple[WireType, Section, Any]] = [(NestedType(package, name), section, data)]
     while pending:
         wire, part, value = pending.pop()
         if isinstance(wire, Sequence):
             elements = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
             pending += ((wire.at(0), part, element) for element in elements)
-        elif isinstance(wire, Nested) and isinstance(value, dict):
+        elif isinstance(wire, NestedType) and isinstance(value, dict):
             fields = _fields(known, wire, part)
             if fields is None:
                 continue
@@ -40,7 +40,7 @@ def unknown_field(
     return None
 
 
-def _fields(known: list[RosDistribution], wire: Nested, section: Section) -> dict[str, WireType] | None:
+def _fields(known: list[RosDistribution], wire: NestedType, section: Section) -> dict[str, WireType] | None:
     """Return the fields of a type in all distributions together, or None if no distribution has it."""
     merged: dict[str, WireType] | None = None
     for distribution in known:

@@ -107,7 +107,7 @@ class Sequence:
 
 
 @dataclass(frozen=True)
-class Nested:
+class NestedType:
     """A message type of a package."""
 
     package: str
@@ -117,6 +117,6 @@ class Nested:
         return f"{self.package}/{self.name}"
 
 
-WireType: TypeAlias = Basic | Sequence | Nested
+WireType: TypeAlias = Basic | Sequence | NestedType
 #: The fields of one section, in the order of its definition.
 Fields: TypeAlias = Mapping[str, WireType]

@@ -12,7 +12,7 @@ from robosc.base.diagnostics import Diagnostic, in_order
 from robosc.base.interruption import checkpoint
 from robosc.base.ros_types import RosTypes
 from robosc.language.checks import rules as _rules  # noqa: F401 - registers them
-from robosc.language.checks.libraries import reachable, remembering
+from robosc.language.checks.libraries import cache_results, reachable
 from robosc.language.checks.rule import RULES
 from robosc.model.places import place
 
@@ -39,7 +39,7 @@ def check(
         skipped.setdefault(finding.file, []).append(finding)
     findings: list[Diagnostic] = []
     interfaces = interfaces or RosTypes()
-    with remembering():
+    with cache_results():
         for checked in [base, *reachable(base)]:
             findings += _findings(checked, skipped.get(place(checked)[0], []), interfaces)
     return in_order(findings)
@@ -51,7 +51,7 @@ def _findings(base: rsc.Base, skipped: Sequence[Diagnostic], interfaces: RosType
         for finding in rule.check(base, interfaces):
             if not finding.can_be_false(skipped):
                 file, span = place(finding.element)
-                hint, edits, ways = finding.said()
+                hint, edits, ways = finding.fixes()
                 yield Diagnostic(
                     file, span, rule.severity, rule.id, finding.message, hint, edits, finding.places(), ways
                 )

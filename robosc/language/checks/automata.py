@@ -8,12 +8,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from robosc.language.checks.definitions import communication_of, of_kind, statements
-from robosc.language.checks.mending import Choice, Insertion, Removal, part_of
+from robosc.language.checks.edits import Choice, Insertion, Removal, part_of
 from robosc.language.checks.rule import Finding, on_line
 from robosc.model import robosc as rsc
 from robosc.model.reflection import tree
-from robosc.model.semantics.communication import event_names, meant
-from robosc.model.semantics.naming import enumeration, written
+from robosc.model.semantics.communication import event_names, port_event_of
+from robosc.model.semantics.naming import enumeration, escape_keyword
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -32,14 +32,14 @@ def unknown_events(base: rsc.Base) -> Iterator[Finding]:
     """Report events that their communications do not have, for the rule `result-type`."""
     for named in named_events(base):
         communication = communication_of(named.communicationType)
-        if communication is not None and meant(named) is None and isinstance(named, rsc.NamedEvent):
+        if communication is not None and port_event_of(named) is None and isinstance(named, rsc.NamedEvent):
             allowed = event_names(communication)
             yield Finding(
                 named,
                 f"{type(communication).__name__.lower()} `{communication.name}` has no {named.resultType}, expected"
                 f" {enumeration(f'`{name}`' for name in allowed)}",
                 Removal(
-                    f"write `{written(communication.name)}` alone",
+                    f"write `{escape_keyword(communication.name)}` alone",
                     part_of(named).until(part_of(named.communicationType)),
                     is_choice=False,
                 ),
@@ -62,7 +62,9 @@ def initial_states(base: rsc.Base) -> Iterator[Finding]:
 
 def start_of(hint: str, states: Iterable[rsc.State | rsc.RequirementState]) -> Choice:
     """Return the choice of the state to make initial."""
-    ways = (Insertion(f"write `initial` before `state {written(state.name)}`", "initial ", state) for state in states)
+    ways = (
+        Insertion(f"write `initial` before `state {escape_keyword(state.name)}`", "initial ", state) for state in states
+    )
     return Choice(hint, tuple(ways))
 
 
@@ -88,7 +90,7 @@ def repeated_events(base: rsc.Base) -> Iterator[Finding]:
             always: dict[Any, rsc.RequirementTransition] = {}
             for transition in state.transitions:
                 reference = transition.event.communicationType if transition.event else None
-                event = meant(transition.event) if reference and reference.communicationType else None
+                event = port_event_of(transition.event) if reference and reference.communicationType else None
                 if reference is None or event is None:
                     continue
                 key = (reference.component, reference.communicationType, event)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from robosc.model import robosc as rsc
-from robosc.model.semantics.communication import meant
+from robosc.model.semantics.communication import port_event_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -36,22 +36,22 @@ class Places:
 
 
 class CommandCondition(NamedTuple):
-    """Condition of a requirement on commands: they are allowed only if it has the value `wanted`."""
+    """Condition of a requirement on commands: they are allowed only if it has the value `value`."""
 
     requirement: rsc.Requirement
     restricted: set[PortInstance | None]
     condition: ex.Expression
     within: Instance | None
-    wanted: bool
+    value: bool
 
 
 def command_conditions(known: Instances) -> Iterator[CommandCondition]:
     """Yield the conditions of requirements on starting commands, including those of requirement automata."""
     for required in known.statements(rsc.CommunicationRequirement):
         if required.element.condition is not None:
-            wanted = not isinstance(required.element, rsc.DisablesRequirement)
+            value = not isinstance(required.element, rsc.DisablesRequirement)
             restricted = commands_of(required, known)
-            yield CommandCondition(required.element, restricted, required.element.condition, required.within, wanted)
+            yield CommandCondition(required.element, restricted, required.element.condition, required.within, value)
     for automaton in known.statements(rsc.AutomatonRequirement):
         events = events_of(automaton.element)
         requests = [reference for reference in events if kind_of(reference) == rsc.ResultType.request]
@@ -59,7 +59,7 @@ def command_conditions(known: Instances) -> Iterator[CommandCondition]:
         for state in automaton.element.states:
             for guard in (transition.guard for transition in state.transitions):
                 if guard is not None:
-                    yield CommandCondition(automaton.element, restricted, guard, automaton.within, wanted=True)
+                    yield CommandCondition(automaton.element, restricted, guard, automaton.within, value=True)
 
 
 def events_of(requirement: rsc.Requirement) -> list[rsc.EventReference]:
@@ -84,5 +84,5 @@ def kind_of(reference: rsc.EventReference) -> rsc.ResultType | None:
     """Return the event that a reference names or implies."""
     if isinstance(reference, rsc.NamedEvent):
         return reference.resultType
-    implied = meant(reference)
+    implied = port_event_of(reference)
     return None if implied is None or not implied.name else getattr(rsc.ResultType, implied.name)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from robosc.model import robosc as rsc
-from robosc.model.semantics.communication import carried, event_of
+from robosc.model.semantics.communication import carrying_events, event_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -176,7 +176,7 @@ def _outermost(base: Text) -> Iterator[rsc.DataType | None]:
         elif isinstance(definition, rsc.ObjectDataType):
             yield from (owner.type for owner in definition.properties)
     for communication in communications(base):
-        yield from (declared for _, declared in carried(communication))
+        yield from (declared for _, declared in carrying_events(communication))
     yield from (variable.type for variable in variables(base))
     yield from (parameter.type for parameter in statements(rsc.Parameter, base))
     for component in of_kind(rsc.Component, base.definitions):

@@ -6,14 +6,14 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING, Any
 
+from robosc.language.checks.edits import Choice, Replacement
 from robosc.language.checks.libraries import instances
-from robosc.language.checks.mending import Choice, Replacement
 from robosc.language.checks.rule import Finding
 from robosc.language.checks.type_repairs import equality_repair, repair
 from robosc.model import expression as ex
 from robosc.model import robosc as rsc
-from robosc.model.semantics.naming import written
-from robosc.model.semantics.operators import SYMBOLS, Operator, Rule, operator_of
+from robosc.model.semantics.naming import escape_keyword
+from robosc.model.semantics.operators import SYMBOLS, Operator, TypeRule, operator_of
 from robosc.model.semantics.typing import (
     BOOLEAN,
     DOUBLE,
@@ -36,7 +36,7 @@ from robosc.model.semantics.walks import fold, operands
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from robosc.language.checks.mending import Hint
+    from robosc.language.checks.edits import Hint
 
 
 class Restriction(Enum):
@@ -66,10 +66,10 @@ class Place:
 
 _STORE_REASON = "store it in a variable by `on error from … do why := error`, and read the variable"
 #: Argument types of functions that take no basic type: a test of a type, and its name.
-_FITTING: Mapping[Rule, tuple[Callable[[Type], bool], str]] = {
-    Rule.SIZE: (lambda found: isinstance(found, ArrayType) or found == STRING, "an array or a string"),
-    Rule.ELEMENTS: (
-        lambda found: isinstance(found, ArrayType) and (is_number(found.element) or found.element == UNKNOWN),
+_FITTING: Mapping[TypeRule, tuple[Callable[[Type], bool], str]] = {
+    TypeRule.SIZE: (lambda kind: isinstance(kind, ArrayType) or kind == STRING, "an array or a string"),
+    TypeRule.ELEMENTS: (
+        lambda kind: isinstance(kind, ArrayType) and (is_number(kind.element) or kind.element == UNKNOWN),
         "an array of integers or doubles",
     ),
 }
@@ -90,33 +90,33 @@ class ExpressionCheck:
         self.place = place
         self.findings: list[Finding] = []
 
-    def expect(self, expression: ex.Expression | None, wanted: Type, what: str) -> None:
+    def expect(self, expression: ex.Expression | None, expected: Type, what: str) -> None:
         """Report the expression unless it has exactly this type; `what` names its role."""
-        found = self.type(expression)
-        if expression is not None and UNKNOWN not in {found, wanted} and found != wanted:
-            wants, finds = names(wanted, found)
-            self.report(expression, f"{what} must be {wants}, found {finds}", repair(expression, found, wanted))
+        actual = self.type(expression)
+        if expression is not None and UNKNOWN not in {actual, expected} and actual != expected:
+            wants, finds = names(expected, actual)
+            self.report(expression, f"{what} must be {wants}, found {finds}", repair(expression, actual, expected))
 
-    def provided(self, value: ex.Expression | None, wanted: Type, what: str) -> None:
+    def expect_data(self, value: ex.Expression | None, expected: Type, what: str) -> None:
         """Report provided data unless it has this type; the properties of an object value are checked one by one."""
-        if isinstance(wanted, EnumType) or wanted == NONE:
-            wanted = UNKNOWN  # `data-type` and `data-provisioning` report this.
+        if isinstance(expected, EnumType) or expected == NONE:
+            expected = UNKNOWN  # `data-type` and `data-provisioning` report this.
         if isinstance(value, rsc.ArrayLiteral):
-            if wanted != UNKNOWN and not isinstance(wanted, ArrayType):
-                self.report(value, f"{what} must be {wanted}, found an array", repair(value, UNKNOWN, wanted))
+            if expected != UNKNOWN and not isinstance(expected, ArrayType):
+                self.report(value, f"{what} must be {expected}, found an array", repair(value, UNKNOWN, expected))
             for element in value.elements:
                 self.expect(
-                    element, wanted.element if isinstance(wanted, ArrayType) else UNKNOWN, f"an element of {what}"
+                    element, expected.element if isinstance(expected, ArrayType) else UNKNOWN, f"an element of {what}"
                 )
             return
         if not isinstance(value, rsc.ObjectValue):
-            self.expect(value, wanted, what)
+            self.expect(value, expected, what)
             return
-        if wanted != UNKNOWN and not isinstance(wanted, ObjectType):
-            self.report(value, f"{what} must be {wanted}, found an object value", repair(value, UNKNOWN, wanted))
-        for given in value.properties:
-            name = f"the value of property `{given.property.name}`" if given.property else "the value"
-            self.provided(given.value, declared_type(given.property.type) if given.property else UNKNOWN, name)
+        if expected != UNKNOWN and not isinstance(expected, ObjectType):
+            self.report(value, f"{what} must be {expected}, found an object value", repair(value, UNKNOWN, expected))
+        for field in value.properties:
+            name = f"the value of property `{field.property.name}`" if field.property else "the value"
+            self.expect_data(field.value, declared_type(field.property.type) if field.property else UNKNOWN, name)
 
     def type(self, expression: ex.Expression | None) -> Type:
         """Return the type of the expression and report faults within it; UNKNOWN if it is faulty itself."""
@@ -161,9 +161,9 @@ class ExpressionCheck:
             self.report(quantifier.array, message, "write the name of an array there")
         self._operand(quantifier.body, types[1], BOOLEAN, f"the condition of `{quantifier.quantifier}`")
 
-    def _operand(self, operand: ex.Expression | None, found: Type, wanted: Type, what: str) -> None:
-        if operand is not None and UNKNOWN not in {found, wanted} and found != wanted:
-            self.report(operand, f"{what} must be {wanted}, found {found}", repair(operand, found, wanted))
+    def _operand(self, operand: ex.Expression | None, actual: Type, expected: Type, what: str) -> None:
+        if operand is not None and UNKNOWN not in {actual, expected} and actual != expected:
+            self.report(operand, f"{what} must be {expected}, found {actual}", repair(operand, actual, expected))
 
     def _conditional(self, choice: ex.Conditional, types: list[Type]) -> Type:
         condition, then, otherwise = types
@@ -180,7 +180,7 @@ class ExpressionCheck:
         self.findings.append(Finding(element, message, hint))
 
     def _operator(self, operator: ex.Expression, row: Operator, types: list[Type]) -> Type:
-        if row.rule is Rule.EQUALITY:
+        if row.rule is TypeRule.EQUALITY:
             self._equality(operator, types)
         elif isinstance(operator, ex.Addition) and {*types} == {STRING}:
             if self.place.restriction is not Restriction.CONSTANT:
@@ -189,16 +189,16 @@ class ExpressionCheck:
                     operator, "`+` joins strings in an expression that is not constant, expected a constant", hint
                 )
         else:
-            wanted = {Rule.LOGICAL: BOOLEAN, Rule.INTEGER: INTEGER, Rule.ROUNDING: DOUBLE}.get(row.rule)
+            expected = {TypeRule.LOGICAL: BOOLEAN, TypeRule.INTEGER: INTEGER, TypeRule.ROUNDING: DOUBLE}.get(row.rule)
             fits, names_wanted = _FITTING.get(row.rule, (is_number, "integer or double"))
             what = "argument" if row.parameters else "operand"
-            for operand, found in zip(operands(operator), types, strict=True):
-                if operand is not None and found != UNKNOWN and not (found == wanted if wanted else fits(found)):
+            for operand, actual in zip(operands(operator), types, strict=True):
+                if operand is not None and actual != UNKNOWN and not (actual == expected if expected else fits(actual)):
                     is_array = row.rule in _FITTING
                     self.report(
                         operand,
-                        f"an {what} of `{row.symbol}` must be {wanted or names_wanted}, found {found}",
-                        "write the name of an array there" if is_array else repair(operand, found, wanted or DOUBLE),
+                        f"an {what} of `{row.symbol}` must be {expected or names_wanted}, found {actual}",
+                        "write the name of an array there" if is_array else repair(operand, actual, expected or DOUBLE),
                     )
         return operator_type(row, types)
 
@@ -208,12 +208,12 @@ class ExpressionCheck:
         comparable = [
             kind in {BOOLEAN, INTEGER, DOUBLE, STRING, UNKNOWN} or isinstance(kind, EnumType) for kind in types
         ]
-        for operand, found, fits in zip(operands, types, comparable, strict=True):
+        for operand, actual, fits in zip(operands, types, comparable, strict=True):
             if not fits:
                 self.report(
                     operand,
-                    f"an operand of `{symbol}` must be boolean, integer, double, string or an enum, found {found}",
-                    repair(operand, found, UNKNOWN),
+                    f"an operand of `{symbol}` must be boolean, integer, double, string or an enum, found {actual}",
+                    repair(operand, actual, UNKNOWN),
                 )
         left, right = types
         if all(comparable) and UNKNOWN not in types and left != right:
@@ -226,8 +226,8 @@ class ExpressionCheck:
         if refusal:
             self.report(access, *refusal)
             return UNKNOWN
-        for index, found in zip(operands(access), indices, strict=True):
-            self._operand(index, found, INTEGER, "an index")
+        for index, actual in zip(operands(access), indices, strict=True):
+            self._operand(index, actual, INTEGER, "an index")
         types = access_types(access, self.place.value)
         for before, segment in zip(types, access.segments, strict=False):
             if isinstance(segment, rsc.IndexSegment) and not isinstance(before, ArrayType) and before != UNKNOWN:
@@ -262,7 +262,7 @@ class ExpressionCheck:
                 "store it in a variable by `on response from … do variable := value`, and read the variable",
             )
         if isinstance(item, rsc.Component):
-            members = [f"{written(item.name)}.{written(member)}" for member in _members(item)]
+            members = [f"{escape_keyword(item.name)}.{escape_keyword(member)}" for member in _members(item)]
             message = f"component `{item.name}` has no value of its own, expected one of its states or variables"
             if not members:
                 return message, f"`{item.name}` has neither: leave it out"

@@ -32,5 +32,5 @@ def fact(find: Callable[[_Base], _Fact], base: _Base) -> _Fact:
     facts = _FACTS.get({})
     if (find, base) not in facts:
         facts[find, base] = find(base)
-    found: _Fact = facts[find, base]
-    return found
+    value: _Fact = facts[find, base]
+    return value

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING
 from robosc.language.checks.facts import fact, keeping_facts
 from robosc.language.checks.rule import Finding, on_line
 from robosc.model.semantics.expansion import constant_value
-from robosc.model.semantics.instances import Instances, imported, libraries
+from robosc.model.semantics.instances import Instances, imported_components, libraries
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
 
-    from robosc.language.checks.mending import Hint
+    from robosc.language.checks.edits import Hint
     from robosc.model import expression as ex
     from robosc.model import robosc as rsc
     from robosc.model.semantics.evaluation import Value
@@ -46,7 +46,7 @@ _MEMORY: ContextVar[_Memory] = ContextVar("_MEMORY")
 
 
 @contextmanager
-def remembering() -> Iterator[None]:
+def cache_results() -> Iterator[None]:
     """Cache results within the `with` block, in which no model may change."""
     token = _MEMORY.set(_Memory())
     try:
@@ -73,7 +73,7 @@ class Meaning:
     """Text of a robot or library, or text of a template with the arguments of one instance."""
 
     definitions: Sequence[rsc.Definition]
-    made: Instance | None = None
+    instance: Instance | None = None
 
     def values(self, *expressions: ex.Expression | None) -> list[Value | None]:
         """Return the value of each constant expression; None if it has none.
@@ -82,16 +82,16 @@ class Meaning:
         template's own text.
         """
         alone = [constant_value(expression) for expression in expressions]
-        if self.made is None or None not in alone:
-            return alone if self.made is None else [None] * len(alone)
-        return [constant_value(expression, self.made) for expression in expressions]
+        if self.instance is None or None not in alone:
+            return alone if self.instance is None else [None] * len(alone)
+        return [constant_value(expression, self.instance) for expression in expressions]
 
     def finding(self, element: ex.Located, message: str, hint: Hint) -> Finding:
         """Return a finding at an element. If arguments of an instance cause it, the place is the instance."""
-        if self.made is None:
+        if self.instance is None:
             return Finding(element, message, hint)
         message = f"with these arguments, {message}{on_line(element)}"
-        return Finding(self.made.component, message, "change the arguments", related=element)
+        return Finding(self.instance.component, message, "change the arguments", related=element)
 
 
 def meanings(base: rsc.Base) -> Iterator[Meaning]:
@@ -104,7 +104,7 @@ def meanings(base: rsc.Base) -> Iterator[Meaning]:
 
 def imports(base: rsc.Base) -> list[tuple[rsc.Component, rsc.Library]]:
     """Return each imported component with its library, in the order of the text, without unresolved libraries."""
-    return fact(imported, base)
+    return fact(imported_components, base)
 
 
 def anything(_: rsc.Base) -> bool:
@@ -120,7 +120,7 @@ def reachable(base: rsc.Base, holds: Holds = anything) -> list[rsc.Library]:
     """
     known = _memory().reachable
     chain: list[tuple[rsc.Base, rsc.Library]] = []
-    found: Cell | None = None
+    cell: Cell | None = None
     current, passed = base, {base}
     while (current, holds) not in known:
         direct = list(dict.fromkeys(library for _, library in imports(current)))
@@ -130,12 +130,12 @@ def reachable(base: rsc.Base, holds: Holds = anything) -> list[rsc.Library]:
             passed.add(current)
             continue
         for library in reversed(libraries(current, imports)):
-            found = Cell(library, found) if fact(holds, library) else found
-        known[current, holds] = found
-    found = known[current, holds]
+            cell = Cell(library, cell) if fact(holds, library) else cell
+        known[current, holds] = cell
+    cell = known[current, holds]
     for importing, library in reversed(chain):
-        found = known[importing, holds] = Cell(library, found) if fact(holds, library) else found
-    return [library for library in dict.fromkeys(_each(found)) if library is not base]
+        cell = known[importing, holds] = Cell(library, cell) if fact(holds, library) else cell
+    return [library for library in dict.fromkeys(_each(cell)) if library is not base]
 
 
 def _each(cell: Cell | None) -> Iterable[rsc.Library]:

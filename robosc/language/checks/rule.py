@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 from robosc.base.diagnostics import Alternative, Edit, Related, Repair, Severity, Span
-from robosc.language.checks.mending import Choice, Replacement, changed_file
+from robosc.language.checks.edits import Choice, Replacement, changed_file
 from robosc.model import expression as ex
 from robosc.model.places import place
 from robosc.model.reflection import tree
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from robosc.base.diagnostics import Diagnostic
     from robosc.base.ros_types import RosTypes
-    from robosc.language.checks.mending import Hint, Way
+    from robosc.language.checks.edits import Hint, Way
     from robosc.model import robosc as rsc
 
 
@@ -36,22 +36,22 @@ class Finding:
     relies_on_names: tuple[type[ex.Located], ...] = ()
     related: ex.Located | None = None
 
-    def said(self) -> tuple[str, tuple[Edit, ...], tuple[Alternative, ...]]:
+    def fixes(self) -> tuple[str, tuple[Edit, ...], tuple[Alternative, ...]]:
         """Return the hint, and its edits in the file of the element or the alternatives to choose from."""
         match self.hint:
-            case Repair(said, None) | str(said):
-                return said, (), ()
-            case Repair(said, text):
-                return said, Replacement(said, str(text), self.element).edits(), ()
-            case Choice(said, ways):
-                return said, (), self._alternatives(ways)
+            case Repair(text_of_hint, None) | str(text_of_hint):
+                return text_of_hint, (), ()
+            case Repair(text_of_hint, text):
+                return text_of_hint, Replacement(text_of_hint, str(text), self.element).edits(), ()
+            case Choice(text_of_hint, ways):
+                return text_of_hint, (), self._alternatives(ways)
         if self.hint.is_choice:
             return self.hint.hint, (), self._alternatives((self.hint,))
         return self.hint.hint, self._edits(self.hint), ()
 
     def _alternatives(self, ways: Iterable[Way]) -> tuple[Alternative, ...]:
-        found = (Alternative(way.hint, self._edits(way)) for way in ways)
-        return tuple(way for way in found if way.edits)
+        alternatives = (Alternative(way.hint, self._edits(way)) for way in ways)
+        return tuple(way for way in alternatives if way.edits)
 
     def _edits(self, way: Way) -> tuple[Edit, ...]:
         """Return the edits of a way in the file of the element; none if it changes another file."""
@@ -92,9 +92,9 @@ def _goes_on(expression: Span, skipped: Span) -> bool:
 
 def _innermost(element: ex.Located, span: Span) -> ex.Located:
     """Return the smallest part of an element that contains a place in the text."""
-    *_, found = (part for _, part in tree(element) if place(part)[1].contains(span))
-    assert isinstance(found, ex.Located)
-    return found
+    *_, innermost = (part for _, part in tree(element) if place(part)[1].contains(span))
+    assert isinstance(innermost, ex.Located)
+    return innermost
 
 
 Check: TypeAlias = "Callable[[rsc.Base], Iterator[Finding]]"
@@ -102,7 +102,7 @@ InterfaceCheck: TypeAlias = "Callable[[rsc.Base, RosTypes], Iterator[Finding]]"
 
 
 @dataclass(frozen=True)
-class Rule:
+class CheckRule:
     """A rule: its identifier, its severity, and a function that yields its violations in one robot or library."""
 
     id: str
@@ -111,7 +111,7 @@ class Rule:
 
 
 #: All rules by identifier, once their modules are imported.
-RULES: dict[str, Rule] = {}
+RULES: dict[str, CheckRule] = {}
 
 
 def rule(identifier: str, severity: Severity = Severity.ERROR) -> Callable[[Check], Check]:
@@ -133,7 +133,7 @@ def interface_rule(identifier: str, severity: Severity = Severity.ERROR) -> Call
 
     def register(check: InterfaceCheck) -> InterfaceCheck:
         assert identifier not in RULES, f"two checks for the rule {identifier}"
-        RULES[identifier] = Rule(identifier, severity, check)
+        RULES[identifier] = CheckRule(identifier, severity, check)
         return check
 
     return register

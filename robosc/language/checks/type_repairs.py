@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 from robosc.base.diagnostics import Repair
 from robosc.language.checks.definitions import component_of
-from robosc.language.checks.mending import Choice, Insertion, Replacement, wrapped
+from robosc.language.checks.edits import Choice, Insertion, Replacement, wrap
 from robosc.model import expression as ex
 from robosc.model import robosc as rsc
 from robosc.model.semantics.communication import data_type, event_of
-from robosc.model.semantics.naming import written
+from robosc.model.semantics.naming import escape_keyword
 from robosc.model.semantics.printing import RoboscPrinter
 from robosc.model.semantics.typing import (
     BOOLEAN,
@@ -29,7 +29,7 @@ from robosc.model.semantics.typing import (
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from robosc.language.checks.mending import Hint, Together
+    from robosc.language.checks.edits import Hint, Together
 
 #: Placeholder in a hint for text that the user writes.
 _GAP = "…"
@@ -45,41 +45,43 @@ _LITERALS: Mapping[Type, tuple[tuple[str, ...], str]] = {
 _LITERAL = (ex.IntegerLiteral, ex.DoubleLiteral, ex.StringLiteral)
 
 
-def repair(expression: ex.Expression, found: Type, wanted: Type) -> Hint:
+def repair(expression: ex.Expression, actual: Type, expected: Type) -> Hint:
     """Return how to turn an expression of one type into one of the wanted type.
 
-    An object value has the type UNKNOWN in `found`. If UNKNOWN is `wanted`, any comparable type is accepted.
+    An object value has the type UNKNOWN in `actual`. If UNKNOWN is `expected`, any comparable type is accepted.
     """
-    source = _source(expression) if isinstance(wanted, EnumType) else None
-    if source and isinstance(wanted, EnumType) and declared_type(wanted.definition.type) == found:
-        name = written(wanted.definition.name)
+    source = _source(expression) if isinstance(expected, EnumType) else None
+    if source and isinstance(expected, EnumType) and declared_type(expected.definition.type) == actual:
+        name = escape_keyword(expected.definition.name)
         hint = f"declare {source[0]} with the type `{name}`, whose rules read this data"
         return Replacement(hint, name, source[1], is_choice=True)
-    if isinstance(found, (ObjectType, ArrayType)) or found == NONE:
-        return _part(expression, found, wanted)
-    literal = literal_repair(expression, found, wanted)
+    if isinstance(actual, (ObjectType, ArrayType)) or actual == NONE:
+        return _part(expression, actual, expected)
+    literal = literal_repair(expression, actual, expected)
     if literal:
         return literal
-    match wanted:
+    match expected:
         case EnumType():
-            return Choice(f"write one of its values: {_alternatives(wanted)}", _in_place(expression, _values(wanted)))
+            return Choice(
+                f"write one of its values: {_alternatives(expected)}", _in_place(expression, _values(expected))
+            )
         case ObjectType():
-            first = next(iter(wanted.definition.properties), None)
+            first = next(iter(expected.definition.properties), None)
             return f"write an object value, such as `{{ {first.name}: … }}`" if first else "write `{}`"
         case ArrayType():
             hint = "write an array, such as `[1.0, 0.0]`"
-            return wrapped(hint, "[", "]", expression, is_choice=True) if found == wanted.element else hint
+            return wrap(hint, "[", "]", expression, is_choice=True) if actual == expected.element else hint
         case BasicType.NONE:
             return "leave the provide statement out: it has no data to send"
-    return _conversion(expression, found, wanted)
+    return _conversion(expression, actual, expected)
 
 
-def literal_repair(expression: ex.Expression, found: Type, wanted: Type) -> Repair | None:
+def literal_repair(expression: ex.Expression, actual: Type, expected: Type) -> Repair | None:
     """Return the equivalent literal of the wanted type as a repair; None if there is none."""
     inner = expression.operand if isinstance(expression, ex.UnaryMinus) else expression
     sign = "" if inner is expression else "-"
     text = None
-    match inner, wanted:
+    match inner, expected:
         case ex.IntegerLiteral(), BasicType.DOUBLE:
             text = f"{sign}{inner.value}.0"
         case ex.DoubleLiteral(), BasicType.INTEGER if inner.value.is_integer():
@@ -92,32 +94,32 @@ def literal_repair(expression: ex.Expression, found: Type, wanted: Type) -> Repa
             text = str(bool(inner.value)).lower()
         case ex.StringLiteral(), BasicType.BOOLEAN if inner.value in {"true", "false"}:
             text = inner.value
-        case ex.StringLiteral(), EnumType() if inner.value in _values(wanted):
-            text = written(inner.value)
-    return Repair(f"write `{text}`", text) if text is not None and found != wanted else None
+        case ex.StringLiteral(), EnumType() if inner.value in _values(expected):
+            text = escape_keyword(inner.value)
+    return Repair(f"write `{text}`", text) if text is not None and actual != expected else None
 
 
 def equality_repair(operator: ex.Equation | ex.Inequation, left: Type, right: Type) -> tuple[ex.Expression, Hint]:
     """Return the place and the repair of a comparison of two types: a literal to rewrite, else the whole."""
     sides = ((operator.right, right, left), (operator.left, left, right))
-    for expression, found, wanted in sides:
-        literal = literal_repair(expression, found, wanted)
+    for expression, actual, expected in sides:
+        literal = literal_repair(expression, actual, expected)
         if literal:
             return expression, literal
-    for expression, found, wanted in sides:
-        if isinstance(wanted, EnumType):
-            hint = f"compare with one of {_alternatives(wanted)}"
-            return operator, Choice(hint, _in_place(expression, _values(wanted)))
-        if {found, wanted} == {INTEGER, DOUBLE}:
+    for expression, actual, expected in sides:
+        if isinstance(expected, EnumType):
+            hint = f"compare with one of {_alternatives(expected)}"
+            return operator, Choice(hint, _in_place(expression, _values(expected)))
+        if {actual, expected} == {INTEGER, DOUBLE}:
             whole = operator.left if left == INTEGER else operator.right
-            said = "multiply the integer by `1.0`, or compare by `<`, `<=`, `>` or `>=`"
-            return operator, _around(said, whole, "", " * 1.0")
+            hint_text = "multiply the integer by `1.0`, or compare by `<`, `<=`, `>` or `>=`"
+            return operator, _around(hint_text, whole, "", " * 1.0")
     return operator, f"compare {left} with {left}, or {right} with {right}"
 
 
 def _in_place(expression: ex.Expression, names: Iterable[str]) -> tuple[Replacement, ...]:
     """Return one replacement of the expression for each name."""
-    return tuple(Replacement(f"write `{written(name)}`", written(name), expression) for name in names)
+    return tuple(Replacement(f"write `{escape_keyword(name)}`", escape_keyword(name), expression) for name in names)
 
 
 def _source(expression: ex.Expression) -> tuple[str, rsc.DataType] | None:
@@ -133,64 +135,64 @@ def _source(expression: ex.Expression) -> tuple[str, rsc.DataType] | None:
     communication = around.communicationType.communicationType if around and around.communicationType else None
     if around is None or communication is None:
         return None
-    name = f"`{written(communication.name)}`"
+    name = f"`{escape_keyword(communication.name)}`"
     if isinstance(communication, rsc.Message):
         return name, communication.type
     declared = data_type(communication, event_of(around.communicationType, around.resultType))
     return None if declared is None else (f"the {around.resultType} of {name}", declared)
 
 
-def _part(whole: ex.Expression, found: Type, wanted: Type) -> Hint:
-    if isinstance(found, ArrayType):
+def _part(whole: ex.Expression, actual: Type, expected: Type) -> Hint:
+    if isinstance(actual, ArrayType):
         hint = f"read one of its elements, such as `{_text(whole)}[0]`"
         return Insertion(hint, "[0]", whole, behind=True, is_choice=True)
-    if not isinstance(found, ObjectType):
+    if not isinstance(actual, ObjectType):
         return "leave it out: this event carries no data"
-    properties = list(found.definition.properties)
-    fitting = [part for part in properties if declared_type(part.type) == wanted]
-    if isinstance(wanted, ObjectType) and not fitting:
-        return f"declare the source and the target of the data with one type, such as `{found.written}`"
+    properties = list(actual.definition.properties)
+    fitting = [part for part in properties if declared_type(part.type) == expected]
+    if isinstance(expected, ObjectType) and not fitting:
+        return f"declare the source and the target of the data with one type, such as `{actual.qualified_name}`"
     fitting = fitting or properties
     if not fitting:
         return "it has none to read"
-    hint = f"read one of its properties, such as `{_text(whole)}.{written(fitting[0].name)}`"
-    names = [written(part.name) for part in fitting]
+    hint = f"read one of its properties, such as `{_text(whole)}.{escape_keyword(fitting[0].name)}`"
+    names = [escape_keyword(part.name) for part in fitting]
     ways = (Insertion(f"write `{_text(whole)}.{name}`", f".{name}", whole, behind=True) for name in names)
     return Choice(hint, tuple(ways))
 
 
-def _conversion(expression: ex.Expression, found: Type, wanted: Type) -> Hint:
-    if wanted == BOOLEAN and not isinstance(expression, _LITERAL):
-        compared = _compared(expression, found)
+def _conversion(expression: ex.Expression, actual: Type, expected: Type) -> Hint:
+    if expected == BOOLEAN and not isinstance(expression, _LITERAL):
+        compared = _compared(expression, actual)
         if compared is not None:
             return compared
-    if (found, wanted) == (INTEGER, DOUBLE):
+    if (actual, expected) == (INTEGER, DOUBLE):
         return _around(f"write `{_text(expression)} * 1.0`", expression, "", " * 1.0", is_choice=False)
-    if (found, wanted) == (DOUBLE, INTEGER):
+    if (actual, expected) == (DOUBLE, INTEGER):
         if isinstance(expression, _LITERAL):
             return "write a whole number or declare it double: RoboSC never rounds implicitly"
         why = "`/` always gives a double" if isinstance(expression, ex.Division) else "RoboSC never rounds implicitly"
         hint = f"write `round({_text(expression).strip('()')})` or declare it double: {why}"
-        return wrapped(hint, "round(", ")", expression, is_choice=True)
-    if isinstance(found, EnumType):
+        return wrap(hint, "round(", ")", expression, is_choice=True)
+    if isinstance(actual, EnumType):
         return "compare an enum's values by `=` only"
-    ways = tuple(Replacement(f"write `{text}`", text, expression) for text in _LITERALS[wanted][0])
-    return Choice(f"write {_LITERALS[wanted][1]}", ways)
+    ways = tuple(Replacement(f"write `{text}`", text, expression) for text in _LITERALS[expected][0])
+    return Choice(f"write {_LITERALS[expected][1]}", ways)
 
 
-def _compared(expression: ex.Expression, found: Type) -> Hint | None:
+def _compared(expression: ex.Expression, actual: Type) -> Hint | None:
     """Return a comparison that has the value as one side."""
-    if isinstance(found, EnumType):
-        texts = [f"= {written(value)}" for value in _values(found)]
+    if isinstance(actual, EnumType):
+        texts = [f"= {escape_keyword(value)}" for value in _values(actual)]
         ways = (
             _around(f"write `{_text(expression)} {text}`", expression, "", f" {text}", is_choice=False)
             for text in texts
         )
         return Choice(f"compare it, such as `{_text(expression)} {texts[0]}`", tuple(ways)) if texts else "compare it"
-    if found not in _COMPARISON:
+    if actual not in _COMPARISON:
         return None
-    hint = f"compare it, such as `{_text(expression)} {_COMPARISON[found]}`"
-    return _around(hint, expression, "", f" {_COMPARISON[found].replace(_GAP, '')}")
+    hint = f"compare it, such as `{_text(expression)} {_COMPARISON[actual]}`"
+    return _around(hint, expression, "", f" {_COMPARISON[actual].replace(_GAP, '')}")
 
 
 def _around(hint: str, expression: ex.Expression, before: str, behind: str, *, is_choice: bool = True) -> Together:
@@ -199,11 +201,11 @@ def _around(hint: str, expression: ex.Expression, before: str, behind: str, *, i
         before, behind = f"({before}", f"{behind})"
     if not isinstance(expression, rsc.Access):
         before, behind = f"{before}(", f"){behind}"
-    return wrapped(hint, before, behind, expression, is_choice=is_choice)
+    return wrap(hint, before, behind, expression, is_choice=is_choice)
 
 
 def _alternatives(enum: EnumType) -> str:
-    return ", ".join(f"`{written(value)}`" for value in _values(enum))
+    return ", ".join(f"`{escape_keyword(value)}`" for value in _values(enum))
 
 
 def _values(enum: EnumType) -> list[str]:
@@ -215,4 +217,6 @@ def _text(expression: ex.Expression) -> str:
     if not isinstance(expression, rsc.Access):
         return "(…)"
     text, own = RoboscPrinter()(expression), component_of(expression)
-    return text.removeprefix(f"{written(own.name)}.") if own is not None and own is expression.component else text
+    return (
+        text.removeprefix(f"{escape_keyword(own.name)}.") if own is not None and own is expression.component else text
+    )

@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
-from robosc.base.ros_types.wire import Nested, Section
+from robosc.base.ros_types.wire import NestedType, Section
 from robosc.language.checks.definitions import communication_of, communications
 from robosc.model import robosc as rsc
 from robosc.model.reflection import tree
-from robosc.model.semantics.communication import PortEvent, carried, event_of, sent
+from robosc.model.semantics.communication import PortEvent, carrying_events, event_of, sending_event
 from robosc.model.semantics.cone_of_influence import accesses
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ Uses: TypeAlias = "dict[rsc.ObjectProperty, ex.Located]"
 
 
 @dataclass(frozen=True)
-class Carried:
+class CommunicationData:
     """Data of one part of a communication with an interface."""
 
     communication: rsc.CommunicationType
@@ -42,18 +42,18 @@ class Carried:
         return self.event.section
 
     @property
-    def ros_type(self) -> Nested:
+    def ros_type(self) -> NestedType:
         """ROS type that the interface names."""
-        return Nested(self.interface.package, self.interface.type)
+        return NestedType(self.interface.package, self.interface.type)
 
 
-def carried_data(base: rsc.Base) -> Iterator[Carried]:
+def carried_data(base: rsc.Base) -> Iterator[CommunicationData]:
     """Yield the data of all communications with an interface that the base defines, in the order of the text."""
     for communication in communications(base):
         interface = communication.interface
         if interface is not None and interface.package and interface.type:
-            for event, declared in carried(communication):
-                yield Carried(communication, interface, declared, event)
+            for event, declared in carrying_events(communication):
+                yield CommunicationData(communication, interface, declared, event)
 
 
 def carries(base: rsc.Base) -> bool:
@@ -75,7 +75,7 @@ class UsedData:
                 elif isinstance(element, rsc.EnumTransformationRule):
                     self._read(element.eContainer(), element.condition)
 
-    def uses(self, data: Carried) -> Uses:
+    def uses(self, data: CommunicationData) -> Uses:
         """Return the properties of some data that are used; an enum uses those that its rules read."""
         uses: Uses = {}
         sources: dict[object, None] = dict.fromkeys([(data.communication, data.event), *_enums(data.declared)])
@@ -97,7 +97,7 @@ class UsedData:
 
     def _provided(self, statement: rsc.ProvideStatement) -> None:
         communication = communication_of(statement.communicationType)
-        touched = self._touched.setdefault((communication, sent(communication)), [])
+        touched = self._touched.setdefault((communication, sending_event(communication)), [])
         touched += [part for _, part in tree(statement) if isinstance(part, rsc.ObjectPropertyValue)]
 
     def _read(self, source: object, expression: ex.Expression | None) -> None:

@@ -7,16 +7,25 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from robosc.base.ros_types import MAKE_KNOWN, REPAIR
-from robosc.base.ros_types.wire import PRIMITIVES, Basic, DefinitionError, Fields, Nested, Section, Sequence, WireType
+from robosc.base.ros_types.wire import (
+    PRIMITIVES,
+    Basic,
+    DefinitionError,
+    Fields,
+    NestedType,
+    Section,
+    Sequence,
+    WireType,
+)
 from robosc.model import robosc as rsc
-from robosc.model.semantics.naming import written
+from robosc.model.semantics.naming import escape_keyword
 from robosc.model.semantics.typing import declared_type
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from robosc.base.ros_types import RosDistribution, RosTypes
-    from robosc.language.checks.wire_data import Carried, Uses
+    from robosc.language.checks.wire_data import CommunicationData, Uses
 
 
 @dataclass(frozen=True)
@@ -49,15 +58,15 @@ class Unknown:
     meant: tuple[str, str] | None = None
 
 
-def faults(data: Carried, interfaces: RosTypes, uses: Uses) -> list[Fault] | Unknown:
+def faults(data: CommunicationData, interfaces: RosTypes, uses: Uses) -> list[Fault] | Unknown:
     """Return the mismatches of some data with its ROS type, in the ROS version in which the used data fits best."""
     answers = []
     try:
-        for _, found in _by_distribution(data, interfaces):
-            if found == []:
+        for _, mismatches in _by_distribution(data, interfaces):
+            if mismatches == []:
                 return []
-            if found is not None:
-                answers.append(found)
+            if mismatches is not None:
+                answers.append(mismatches)
     except DefinitionError:
         answers = []
     if not answers:
@@ -65,12 +74,12 @@ def faults(data: Carried, interfaces: RosTypes, uses: Uses) -> list[Fault] | Unk
     return min(answers, key=lambda answer: (sum(fault.is_used(uses) for fault in answer), len(answer)))
 
 
-def misfits(data: Carried, interfaces: RosTypes, uses: Uses) -> dict[str, str]:
+def misfits(data: CommunicationData, interfaces: RosTypes, uses: Uses) -> dict[str, str]:
     """Return each of the two ROS versions in which the used data does not fit, with the reason.
 
     If nothing is known of the type's package, the data may fit.
     """
-    found = {}
+    misfit_reasons = {}
     try:
         for distribution, answer in _by_distribution(data, interfaces):
             if answer is not None:
@@ -80,13 +89,15 @@ def misfits(data: Carried, interfaces: RosTypes, uses: Uses) -> dict[str, str]:
             else:
                 reasons = []
             if reasons:
-                found[distribution.name] = reasons[0]
+                misfit_reasons[distribution.name] = reasons[0]
     except DefinitionError:
         return {}
-    return found
+    return misfit_reasons
 
 
-def _by_distribution(data: Carried, interfaces: RosTypes) -> Iterator[tuple[RosDistribution, list[Fault] | None]]:
+def _by_distribution(
+    data: CommunicationData, interfaces: RosTypes
+) -> Iterator[tuple[RosDistribution, list[Fault] | None]]:
     """Yield the mismatches in each ROS version; None if it has no such type. Raises DefinitionError."""
     ros_type, part = data.ros_type, data.part
     for distribution in interfaces.distributions:
@@ -101,11 +112,11 @@ def _by_distribution(data: Carried, interfaces: RosTypes) -> Iterator[tuple[RosD
 
 
 class _Comparison:
-    def __init__(self, distribution: RosDistribution, data: Carried) -> None:
+    def __init__(self, distribution: RosDistribution, data: CommunicationData) -> None:
         self._distribution = distribution
         self._ros_type = data.ros_type
         self._is_received = data.is_received
-        self._around: list[tuple[object, Nested]] = []
+        self._around: list[tuple[object, NestedType]] = []
 
     def whole(self, declared: rsc.DataType, fields: Fields, name: str) -> Iterator[Fault]:
         """Yield the mismatches of a section: objects field by field, a basic value with the only field."""
@@ -141,7 +152,7 @@ class _Comparison:
                 taken = {other.name for other in definition.properties}
                 others = {field: fitting for field, fitting in others.items() if field not in taken}
                 fitting = _type_for(fields[close[0]]) if close and isinstance(owner.type, rsc.BasicDataType) else None
-                text = f"{written(close[0])}: {fitting}" if fitting is not None else None
+                text = f"{escape_keyword(close[0])}: {fitting}" if fitting is not None else None
                 message = f"`{owner.name}` is not a field of {name}: {_listed(fields)}"
                 yield Fault(
                     owner,
@@ -161,14 +172,14 @@ class _Comparison:
             message = f"`{owner.name}` is {_text(owner.type)} here, and {wire} in {name}"
             hint, text = _repair(wire, owner.name)
             yield Fault(owner, message, hint, text=text, others=None if text else {})
-        elif isinstance(definition, rsc.ObjectDataType) and isinstance(element, Nested):
+        elif isinstance(definition, rsc.ObjectDataType) and isinstance(element, NestedType):
             yield from self._nested(owner, definition, element)
         elif declared is not None and not _is_open(declared) and not self._holds(element, declared):
             message = f"`{owner.name}` is {_text(owner.type)} here, and {wire} in {name}"
             hint, text = _repair(wire, owner.name)
             yield Fault(owner, message, hint, text=text, others=None if text else {})
 
-    def _nested(self, owner: rsc.ObjectProperty, definition: rsc.ObjectDataType, wire: Nested) -> Iterator[Fault]:
+    def _nested(self, owner: rsc.ObjectProperty, definition: rsc.ObjectDataType, wire: NestedType) -> Iterator[Fault]:
         if (definition, wire) in self._around:
             return  # ROS has no type that contains itself, and `data-type` reports such a model.
         try:
@@ -193,7 +204,7 @@ class _Comparison:
         return primitive.name == text or (self._is_received and (primitive.name, text) == ("integer", "double"))
 
 
-def _name(ros_type: Nested, part: Section) -> str:
+def _name(ros_type: NestedType, part: Section) -> str:
     return str(ros_type) if part is Section.MESSAGE else f"the {part.name.lower()} of {ros_type}"
 
 
@@ -210,8 +221,8 @@ def wire_type(declared: rsc.DataType | None) -> rsc.DataType | None:
     return declared
 
 
-def _ros_type(reference: rsc.InterfaceTypeReference) -> Nested:
-    return Nested(reference.package, reference.rosType)
+def _ros_type(reference: rsc.InterfaceTypeReference) -> NestedType:
+    return NestedType(reference.package, reference.rosType)
 
 
 def _is_open(declared: rsc.DataType) -> bool:
@@ -238,7 +249,7 @@ def _repair(wire: WireType, name: str | None) -> tuple[str, str | None]:
     fitting = _type_for(wire)
     if fitting is None:
         return f"leave it out: no data type fits {wire}" if name else f"write `none`: no data type fits {wire}", None
-    text = f"{written(name)}: {fitting}" if name else fitting
+    text = f"{escape_keyword(name)}: {fitting}" if name else fitting
     return f"write `{text}`", text
 
 
@@ -246,7 +257,7 @@ def _type_for(wire: WireType) -> str | None:
     if isinstance(wire, Sequence):
         element = _type_for(wire.element)
         return None if element is None else f"array({element})"
-    if isinstance(wire, Nested):
+    if isinstance(wire, NestedType):
         return str(wire)
     primitive = PRIMITIVES.get(wire.name)
     return None if primitive is None else primitive.name

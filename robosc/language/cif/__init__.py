@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robosc.base.diagnostics import has_errors, in_order
-from robosc.language.cif.faults import CifFaultError, construct, located
+from robosc.language.cif.faults import CifFaultError, construct, place_of
 from robosc.language.cif.parsing import annotations_of, parse
 from robosc.language.cif.scopes import Specification
 from robosc.language.cif.to_sct import to_sct
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from robosc.base.diagnostics import Diagnostic
     from robosc.model import sct
 
-__all__ = ["Reading", "read", "read_supervised"]
+__all__ = ["CifReading", "read", "read_supervised"]
 
 #: Annotations of CIF that do not affect synthesis.
 _MEANINGLESS = frozenset(["doc", "state", "controller:properties"])
@@ -32,7 +32,7 @@ _REQUIRED = "requirement:"
 
 
 @dataclass(frozen=True)
-class Reading:
+class CifReading:
     """Result of reading a specification: its sct model, the findings, and the texts by path.
 
     `model` is None if the specification has errors.
@@ -43,14 +43,14 @@ class Reading:
     texts: dict[str, str]
 
 
-def read(path: Path | str, documents: Documents | None = None, *, supervised: bool = False) -> Reading:
+def read(path: Path | str, documents: Documents | None = None, *, supervised: bool = False) -> CifReading:
     """Read a specification and all that it imports. Raises OSError if the file itself cannot be read.
 
     Supervisor automata are rejected or, if the specification may be `supervised`, read as plants.
     """
     files = _Files(Path(path), documents or Documents())
     if has_errors(files.findings):
-        return Reading(None, in_order(files.findings), files.texts)
+        return CifReading(None, in_order(files.findings), files.texts)
     names = Specification()
     for specification in files.specifications:
         names.add(specification)
@@ -58,12 +58,12 @@ def read(path: Path | str, documents: Documents | None = None, *, supervised: bo
     model = to_sct(names, Path(path).name.removesuffix(".cif"), supervised=supervised)
     findings = in_order([*files.findings, *names.findings])
     if names.findings:
-        return Reading(None, findings, files.texts)
-    model.source = located(names.first)
-    return Reading(model, findings, files.texts)
+        return CifReading(None, findings, files.texts)
+    model.source = place_of(names.first)
+    return CifReading(model, findings, files.texts)
 
 
-def read_supervised(model: sct.SupervisoryControlModel, text: str) -> Reading | None:
+def read_supervised(model: sct.SupervisoryControlModel, text: str) -> CifReading | None:
     """Read a specification that imports the one of a model, as if its file were beside the model's file.
 
     Returns None if the model's own specification is no longer readable.
@@ -90,12 +90,12 @@ class _Files:
         self._known = {path.resolve()}
         self._imports: list[tuple[Path, Any]] = []
         self._parse(path, documents.read(path))
-        for file, asked in self._imports:  # `_parse` extends the list during the loop.
+        for file, importing in self._imports:  # `_parse` extends the list during the loop.
             try:
                 content = documents.read(file)
             except OSError as error:
                 reason = error.strerror or str(error)
-                fault = CifFaultError(asked, "unresolved-reference", f"the file `{file}` cannot be read: {reason}")
+                fault = CifFaultError(importing, "unresolved-reference", f"the file `{file}` cannot be read: {reason}")
                 self.findings.append(fault.finding())
             else:
                 self._parse(file, content)

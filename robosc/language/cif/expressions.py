@@ -8,8 +8,17 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from robosc.language.cif.faults import CifFaultError, construct
 from robosc.model import expression as ex
 from robosc.model import sct
-from robosc.model.semantics.cif_types import BOOLEAN, FOREIGN, OPERATORS, Type, bounded, combined, joined, shown
-from robosc.model.semantics.walks import copied, parts
+from robosc.model.semantics.cif_types import (
+    BOOLEAN,
+    FOREIGN,
+    OPERATORS,
+    Type,
+    combine_types,
+    format_type,
+    join_types,
+    value_range,
+)
+from robosc.model.semantics.walks import copy_tree, parts
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -21,13 +30,13 @@ _OPENINGS = {"-": "negate", "+": "plus", "case": "first case", "else": "first el
 _LEVELS = {word: level for word, (level, _) in OPERATORS.items()} | FOREIGN
 
 
-class Typed(NamedTuple):
+class TypedNode(NamedTuple):
     """An expression with its type and the object of the grammar from which it was created.
 
     The type of an automaton is its plant; an automaton has a value only in a `switch`.
     """
 
-    read: Any
+    node: Any
     expression: Any
     type: Type | Any
 
@@ -37,17 +46,17 @@ class _Open:
     """An incomplete operator, `if` or `switch`, with its alternatives so far."""
 
     word: str
-    read: Any
-    switched: Typed | None = None
-    conditions: list[Typed] = field(default_factory=list)
-    values: list[Typed] = field(default_factory=list)
+    node: Any
+    switched: TypedNode | None = None
+    conditions: list[TypedNode] = field(default_factory=list)
+    values: list[TypedNode] = field(default_factory=list)
 
 
 class ExpressionReader:
     """Reads one expression from its tokens, operators without recursion (Dijkstra's shunting yard)."""
 
     def __init__(
-        self, read: Any, value_of: Callable[[Any, sct.Plant | None], Typed], grow: Callable[[Any, int], None]
+        self, node: Any, value_of: Callable[[Any, sct.Plant | None], TypedNode], grow: Callable[[Any, int], None]
     ) -> None:
         """Read the expression.
 
@@ -57,17 +66,16 @@ class ExpressionReader:
         `grow` is called with a place and the number of nodes added there beyond those of the text.
         """
         self._grow = grow
-        self._done: list[Typed] = []
+        self._done: list[TypedNode] = []
         self._open: list[_Open] = []
-        self._read = read
-        for word, token in _tokens(read):
+        for word, token in _tokens(node):
             if word is None:
                 self._done.append(value_of(token, self._switched()))
             else:
                 self._take(word, token)
         self._reduce(0)
         if self._open:
-            raise CifFaultError(read, "syntax", f"`{self._open[-1].read.token}` is not closed", "end it with `end`")
+            raise CifFaultError(node, "syntax", f"`{self._open[-1].node.token}` is not closed", "end it with `end`")
         [self.result] = self._done
 
     def _switched(self) -> sct.Plant | None:
@@ -142,54 +150,56 @@ class ExpressionReader:
             else:
                 return
 
-    def _binary(self, top: _Open, left: Typed, right: Typed) -> Typed:
+    def _binary(self, top: _Open, left: TypedNode, right: TypedNode) -> TypedNode:
         for operand in (left, right):
             if isinstance(operand.type, sct.Plant):
-                raise CifFaultError(operand.read, "type", "an automaton is not a value", "name one of its locations")
-        kind = _checked(top.read, combined, top.word, left.type, right.type)
+                raise CifFaultError(operand.node, "type", "an automaton is not a value", "name one of its locations")
+        kind = _checked(top.node, combine_types, top.word, left.type, right.type)
         if top.word == "mod":
             arguments = [left.expression, right.expression]
-            return Typed(top.read, ex.FunctionCall(function="mod", arguments=arguments), kind)
-        made = OPERATORS[top.word][1](left=left.expression, right=right.expression)
-        return Typed(top.read, made, kind)
+            return TypedNode(top.node, ex.FunctionCall(function="mod", arguments=arguments), kind)
+        expression = OPERATORS[top.word][1](left=left.expression, right=right.expression)
+        return TypedNode(top.node, expression, kind)
 
-    def _unary(self, top: _Open, operand: Typed) -> Typed:
+    def _unary(self, top: _Open, operand: TypedNode) -> TypedNode:
         if top.word == "not":
             self._boolean(operand, "`not` does not apply to {}")
-            return Typed(top.read, ex.Negation(operand=operand.expression), BOOLEAN)
+            return TypedNode(top.node, ex.Negation(operand=operand.expression), BOOLEAN)
         if not isinstance(operand.type, range):
-            raise CifFaultError(top.read, "type", f"a sign does not apply to {shown(operand.type)}")
+            raise CifFaultError(top.node, "type", f"a sign does not apply to {format_type(operand.type)}")
         if top.word == "plus":
             return operand
         values = range(1 - operand.type.stop, 1 - operand.type.start)
-        return Typed(top.read, ex.UnaryMinus(operand=operand.expression), _checked(top.read, bounded, "-", values))
+        return TypedNode(
+            top.node, ex.UnaryMinus(operand=operand.expression), _checked(top.node, value_range, "-", values)
+        )
 
-    def _is(self, switched: Typed, key: Typed) -> Typed:
+    def _is(self, switched: TypedNode, key: TypedNode) -> TypedNode:
         """Return the condition that the value of a `switch` equals a key."""
         if isinstance(switched.type, sct.Plant):
             return key  # The key is a location, which is true while the automaton is in it.
-        _checked(key.read, combined, "=", switched.type, key.type)
-        self._grow(key.read, sum(1 for _ in parts(switched.expression)))
-        return Typed(key.read, ex.Equation(left=copied(switched.expression), right=key.expression), BOOLEAN)
+        _checked(key.node, combine_types, "=", switched.type, key.type)
+        self._grow(key.node, sum(1 for _ in parts(switched.expression)))
+        return TypedNode(key.node, ex.Equation(left=copy_tree(switched.expression), right=key.expression), BOOLEAN)
 
     @staticmethod
-    def _boolean(operand: Typed, problem: str) -> None:
+    def _boolean(operand: TypedNode, problem: str) -> None:
         if operand.type != BOOLEAN:
-            what = "an automaton" if isinstance(operand.type, sct.Plant) else shown(operand.type)
-            raise CifFaultError(operand.read, "type", problem.format(what))
+            what = "an automaton" if isinstance(operand.type, sct.Plant) else format_type(operand.type)
+            raise CifFaultError(operand.node, "type", problem.format(what))
 
     @staticmethod
-    def _choice(top: _Open, otherwise: Typed) -> Typed:
-        made, kind = otherwise.expression, otherwise.type
+    def _choice(top: _Open, otherwise: TypedNode) -> TypedNode:
+        expression, kind = otherwise.expression, otherwise.type
         for condition, value in reversed(list(zip(top.conditions, top.values, strict=True))):
-            kind = _checked(top.read, joined, value.type, kind)
-            made = ex.Conditional(condition=condition.expression, then=value.expression, otherwise=made)
-        return Typed(top.read, made, kind)
+            kind = _checked(top.node, join_types, value.type, kind)
+            expression = ex.Conditional(condition=condition.expression, then=value.expression, otherwise=expression)
+        return TypedNode(top.node, expression, kind)
 
 
-def _tokens(read: Any) -> Iterator[tuple[str | None, Any]]:
+def _tokens(node: Any) -> Iterator[tuple[str | None, Any]]:
     """Yield the tokens of an expression with their words; operands have None. Signs are marked as unary."""
-    further = [(None, read.first), *((other.operator, other.operand) for other in read.others)]
+    further = [(None, node.first), *((other.operator, other.operand) for other in node.others)]
     for operator, operand in further:
         if operator is not None:
             yield operator.token, operator
@@ -199,9 +209,9 @@ def _tokens(read: Any) -> Iterator[tuple[str | None, Any]]:
         yield from ((closing.token, closing) for closing in operand.closings)
 
 
-def named(read: Any) -> Iterator[Any]:
+def referenced_names(node: Any) -> Iterator[Any]:
     """Yield the names in an expression, except those that are keys of a `switch` by themselves."""
-    pending = [read]
+    pending = [node]
     while pending:
         here = pending.pop()
         for operand in (here.first, *(other.operand for other in here.others)):
@@ -215,9 +225,9 @@ def named(read: Any) -> Iterator[Any]:
                     yield value.name
 
 
-def _checked(read: Any, rule: Callable[..., Any], *given: Any) -> Any:
+def _checked(node: Any, rule: Callable[..., Any], *operands: Any) -> Any:
     """Return the type by a rule; a TypeError becomes a fault of this place."""
     try:
-        return rule(*given)
+        return rule(*operands)
     except TypeError as fault:
-        raise CifFaultError(read, "type", str(fault)) from None
+        raise CifFaultError(node, "type", str(fault)) from None

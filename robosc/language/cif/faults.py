@@ -16,16 +16,16 @@ if TYPE_CHECKING:
 class CifFaultError(Exception):
     """A fault in a text: the object of the grammar, the rule, the message, and the repair or hint."""
 
-    def __init__(self, read: Any, rule: str, message: str, repair: Repair | str | None = None) -> None:
+    def __init__(self, node: Any, rule: str, message: str, repair: Repair | str | None = None) -> None:
         super().__init__(message)
-        self.read = read
+        self.node = node
         self.rule = rule
         self.message = message
         self.repair = repair
 
     def finding(self) -> Diagnostic:
         """Return the fault as a finding in its text."""
-        return text_of(self.read).error(self.rule, *span(self.read), self.message, self.repair)
+        return text_of(self.node).error(self.rule, *span(self.node), self.message, self.repair)
 
     def warning(self) -> Diagnostic:
         """Return the fault as a finding that leaves the model usable."""
@@ -39,24 +39,24 @@ SUPERVISORS = "CIF's `cif2cif -t relabel-supervisors-as-plants` converts them to
 TAU = "CIF's `cif2cif -t elim-tau-event` adds an event: declare it as `uncontrollable`"
 
 
-def text_of(read: Any) -> Text:
+def text_of(node: Any) -> Text:
     """Return the text of an object of the grammar; the specification around it stores the text."""
-    while hasattr(read, "parent"):
-        read = read.parent
-    text: Text = read.whole_text
+    while hasattr(node, "parent"):
+        node = node.parent
+    text: Text = node.whole_text
     return text
 
 
-def span(read: Any) -> tuple[int, int]:
+def span(node: Any) -> tuple[int, int]:
     """Return the offsets of an object of the grammar in its text."""
-    return read._tx_position, read._tx_position_end  # noqa: SLF001 - textX has no public attribute for them
+    return node._tx_position, node._tx_position_end  # noqa: SLF001 - textX has no public attribute for them
 
 
-def located(read: Any) -> Place:
+def place_of(node: Any) -> Place:
     """Return the place of an object of the grammar."""
-    return text_of(read).source(*span(read))
+    return text_of(node).source(*span(node))
 
 
-def construct(read: Any, what: str, hint: str) -> CifFaultError:
+def construct(node: Any, what: str, hint: str) -> CifFaultError:
     """Return the fault of a construct that synthesis does not support, with the hint that removes it."""
-    return CifFaultError(read, "cif-construct", f"synthesis does not take {what}", hint)
+    return CifFaultError(node, "cif-construct", f"synthesis does not take {what}", hint)

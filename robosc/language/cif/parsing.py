@@ -14,7 +14,7 @@ import textx
 
 from robosc.base.diagnostics import Repair
 from robosc.base.files.resources import locate
-from robosc.language.explaining import closest, keyword_hint
+from robosc.language.syntax_messages import closest, keyword_hint
 from robosc.model.semantics.naming import enumeration
 
 if TYPE_CHECKING:
@@ -100,7 +100,7 @@ def parse(text: Text) -> tuple[Any, list[Diagnostic]]:
     while True:
         try:
             if not findings:
-                return _made(text), findings
+                return _parse(text), findings
             _grammar()._parser_blueprint.clone().parse(content)  # noqa: SLF001 - what model_from_str does first
         except textx.TextXSyntaxError as fault:
             failed = fault.__cause__
@@ -109,11 +109,11 @@ def parse(text: Text) -> tuple[Any, list[Diagnostic]]:
         else:
             return None, findings
         assert isinstance(failed, arpeggio.NoMatch)
-        start, end, found = _token(content, failed.position)
-        if findings and (failed.position <= reported or found in {"end", ""}):
+        start, end, token = _token(content, failed.position)
+        if findings and (failed.position <= reported or token in {"end", ""}):
             return None, findings  # This fault is probably a consequence of the previous one.
-        wanted = list(dict.fromkeys(map(_wanted, failed.rules)))
-        findings.append(text.error("syntax", start, end, _message(found, wanted), _hint(found, wanted)))
+        expectations = list(dict.fromkeys(map(_expectation, failed.rules)))
+        findings.append(text.error("syntax", start, end, _message(token, expectations), _hint(token, expectations)))
         if len(findings) == _MOST:
             return None, findings
         first, reported = _statement(content, start)
@@ -123,8 +123,8 @@ def parse(text: Text) -> tuple[Any, list[Diagnostic]]:
 
 def annotations_of(specification: Any) -> list[Any]:
     """Return the annotations of a specification, in the order of the text."""
-    found: list[Any] = textx.get_children_of_type("Annotation", specification)
-    return found
+    annotations: list[Any] = textx.get_children_of_type("Annotation", specification)
+    return annotations
 
 
 def _too_deep(text: Text) -> Diagnostic | None:
@@ -140,7 +140,7 @@ def _too_deep(text: Text) -> Diagnostic | None:
         top, depth = around[-1] if around else ("", 0)
         if word in _STARTERS or (word in {"func", ";"} and top not in _BRACKETS):
             head = word == "func"  # If a semicolon comes first, `func` was a type.
-        opened = _opened(word, top, head=head)
+        opened = _opening_text(word, top, head=head)
         counts = opened in _MENDS and word != ":"
         if counts and depth == DEEPEST:
             message = f"this is nested more than {DEEPEST} levels deep"
@@ -162,7 +162,7 @@ def _close(around: list[tuple[str, int]], word: str) -> None:
         around.pop()
 
 
-def _opened(word: str, top: str, *, head: bool) -> str:
+def _opening_text(word: str, top: str, *, head: bool) -> str:
     """Return the construct that a word opens (`func` for the statements of a function), or an empty string."""
     if word == ":":
         return "func" if head and top in {"", "group"} else ""
@@ -173,7 +173,7 @@ def _opened(word: str, top: str, *, head: bool) -> str:
     return word if is_automaton or word in _BRACKETS or word == "group" else ""
 
 
-def _made(text: Text) -> Any:
+def _parse(text: Text) -> Any:
     """Return the objects of a text; a text of comments alone gets an empty specification."""
     specification = _grammar().model_from_str(text.content)
     if isinstance(specification, str):
@@ -210,28 +210,30 @@ def _statement(content: str, position: int) -> tuple[int, int]:
     return first, len(content)
 
 
-def _wanted(rule: Any) -> str:
+def _expectation(rule: Any) -> str:
     if isinstance(rule, arpeggio.EndOfFile):
         return "the end of the file"
     named = rule.rule_name and rule.rule_name in _RULES
     return str(rule.rule_name if named else getattr(rule, "to_match", rule.rule_name))
 
 
-def _message(found: str, wanted: list[str]) -> str:
-    words = [word for word in wanted if word]
+def _message(symbol: str, expectations: list[str]) -> str:
+    words = [word for word in expectations if word]
     for name, core in _GROUPS:
         if core <= set(words):
             first = words.index(next(word for word in words if word in core))
             words = [
                 name if place == first else word for place, word in enumerate(words) if place == first or _tells(word)
             ]
-    told = [
+    phrases = [
         word if word in {name for name, _ in _GROUPS} or " " in word else _RULES.get(word, f"`{word}`")
         for word in words
         if len(word) < 20 and (word in _RULES or "\\" not in word)
     ]
-    shown = f"`{found if len(found) <= 30 else found[:29] + chr(0x2026)}`" if found else "the end of the file"
-    return f"found {shown}, expected {enumeration(dict.fromkeys(told))}" if told else f"{shown} is not allowed here"
+    shown = f"`{symbol if len(symbol) <= 30 else symbol[:29] + chr(0x2026)}`" if symbol else "the end of the file"
+    if not phrases:
+        return f"{shown} is not allowed here"
+    return f"found {shown}, expected {enumeration(dict.fromkeys(phrases))}"
 
 
 def _tells(word: str) -> bool:
@@ -239,17 +241,21 @@ def _tells(word: str) -> bool:
     return word in {";", ",", ":", ":=", ")", "do", "goto", "needs", "disables", "when"}
 
 
-def _hint(found: str, wanted: list[str]) -> Repair | str | None:
-    """Return a repair or hint for an unexpected token, or None if there is none."""
-    if found in _MEANT and _MEANT[found] in wanted:
-        return Repair(f"write `{_MEANT[found]}`", _MEANT[found])
-    if found == "=" and ":=" in wanted:
+def _hint(symbol: str, expectations: list[str]) -> Repair | str | None:
+    """Return a repair or hint for an unexpected symbol, or None if there is none."""
+    if symbol in _MEANT and _MEANT[symbol] in expectations:
+        return Repair(f"write `{_MEANT[symbol]}`", _MEANT[symbol])
+    if symbol == "=" and ":=" in expectations:
         return Repair("write `:=` for an assignment", ":=")
-    close = closest(found, [word for word in wanted if word.isalpha()], cutoff=0.6) if found.isidentifier() else None
-    if close is not None and found not in wanted:
-        return keyword_hint(found, close)
-    if ";" in wanted and found.isidentifier():
+    close = (
+        closest(symbol, [word for word in expectations if word.isalpha()], cutoff=0.6)
+        if symbol.isidentifier()
+        else None
+    )
+    if close is not None and symbol not in expectations:
+        return keyword_hint(symbol, close)
+    if ";" in expectations and symbol.isidentifier():
         return "is a `;` missing before it?"
-    if found.isidentifier() and "Identifier" in wanted:
-        return f"write a dollar sign before a keyword that is a name: `${found}`"
+    if symbol.isidentifier() and "Identifier" in expectations:
+        return f"write a dollar sign before a keyword that is a name: `${symbol}`"
     return None

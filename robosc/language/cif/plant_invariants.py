@@ -14,7 +14,7 @@ from robosc.model import expression as ex
 from robosc.model import sct
 from robosc.model.reflection import tree
 from robosc.model.semantics.printing import conjunction
-from robosc.model.semantics.walks import copied, fold, operands, parts, with_operands
+from robosc.model.semantics.walks import copy_tree, fold, operands, parts, with_operands
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -32,13 +32,15 @@ def keep(
 
     The condition is None if there are too many combinations of edges.
     """
-    read = set(_read(invariant))
+    elements = set(_read(invariant))
     for event, by_plant in edges.items():
-        changing = {plant: own for plant, own in by_plant.items() if any(read & set(_changed(edge)) for edge in own)}
+        changing = {
+            plant: own for plant, own in by_plant.items() if any(elements & set(_changed(edge)) for edge in own)
+        }
         if len(changing) == 1 and all(plant.kind != sct.PlantKind.requirement for plant in changing):
             [own] = changing.values()
             for edge in own:
-                if read & set(_changed(edge)):
+                if elements & set(_changed(edge)):
                     parts = [part for part in (edge.guard, after(invariant, [edge])) if part is not None]
                     edge.guard = conjunction(parts)
         elif changing:
@@ -53,12 +55,12 @@ def _together(invariant: ex.Expression, edges: Sequence[Sequence[sct.Edge]]) -> 
     ways = prod(map(len, edges))
     if ways > _MOST or ways * sum(1 for _ in parts(invariant)) > _LARGEST:
         return None
-    kept = []
+    conditions = []
     for chosen in product(*edges):
         taken = conjunction(part for edge in chosen for part in _enabled(edge))
         result = after(invariant, chosen)
-        kept.append(result if taken is None else ex.Implication(left=taken, right=result))
-    return conjunction(kept)
+        conditions.append(result if taken is None else ex.Implication(left=taken, right=result))
+    return conjunction(conditions)
 
 
 def after(condition: ex.Expression, edges: Iterable[sct.Edge]) -> ex.Expression:
@@ -66,12 +68,12 @@ def after(condition: ex.Expression, edges: Iterable[sct.Edge]) -> ex.Expression:
     targets = {edge.target.eContainer(): edge.target for edge in edges}
     values = {update.variable: update.value for edge in edges for update in edge.updates}
 
-    def replaced(part: ex.Expression, given: Sequence[ex.Expression]) -> ex.Expression:
+    def replaced(part: ex.Expression, operands: Sequence[ex.Expression]) -> ex.Expression:
         if isinstance(part, sct.LocationReference) and part.location.eContainer() in targets:
             return ex.BooleanLiteral(value=targets[part.location.eContainer()] is part.location)
         if isinstance(part, sct.VariableReference) and part.variable in values:
-            return copied(values[part.variable])
-        return with_operands(part, given) if given else copied(part)
+            return copy_tree(values[part.variable])
+        return with_operands(part, operands) if operands else copy_tree(part)
 
     return fold(replaced, condition, operands)
 
@@ -80,7 +82,7 @@ def _enabled(edge: sct.Edge) -> Iterator[ex.Expression]:
     if len(edge.target.eContainer().locations) > 1:
         yield sct.LocationReference(location=edge.eContainer())
     if edge.guard is not None:
-        yield copied(edge.guard)
+        yield copy_tree(edge.guard)
 
 
 def _changed(edge: sct.Edge) -> Iterator[Element]:

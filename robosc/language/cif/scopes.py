@@ -1,7 +1,7 @@
 """Names of a specification: groups, automata, instances of definitions, and their declarations.
 
 `Specification` declares all names and creates every instance of a definition. An instance is a scope like a group or an
-automaton, but its names are looked up around the definition. A declaration is a `Declared`. The element behind a
+automaton, but its names are looked up around the definition. A declaration is a `Declaration`. The element behind a
 parameter is looked up around the instance.
 """
 
@@ -12,9 +12,9 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from robosc.base.diagnostics import Repair
-from robosc.language.cif.faults import CHANNELS, CifFaultError, construct, located
+from robosc.language.cif.faults import CHANNELS, CifFaultError, construct, place_of
 from robosc.language.cif.parsing import identifier
-from robosc.language.explaining import closest
+from robosc.language.syntax_messages import closest
 from robosc.model import sct
 
 if TYPE_CHECKING:
@@ -35,19 +35,19 @@ _LISTS = {
 
 
 @dataclass(eq=False)
-class Declared:
+class Declaration:
     """A named element; `kind` is the grammar rule of its declaration.
 
-    `read` is its own object of the grammar, and `outer` that of the statement with its type. `made` is the element of
-    the sct metamodel that was created for it.
+    `node` is its own object of the grammar, and `outer` that of the statement with its type. `element` is the element
+    of the sct metamodel that was created for it.
     """
 
     kind: str
     name: str
-    read: Any
+    node: Any
     outer: Any
     scope: Scope
-    made: Any = None
+    element: Any = None
     #: Type of a variable.
     type: Any = None
     #: Fault for which a variable was not created.
@@ -58,7 +58,7 @@ class Declared:
 class Argument:
     """An argument of an instance: its expression, and the element that the expression names (`named`)."""
 
-    read: Any
+    node: Any
     scope: Scope
     parameter: Any
     named: Name | CifFaultError | None = None
@@ -74,12 +74,12 @@ class Scope:
 
     path: str
     around: Scope | None
-    read: Any
+    node: Any
     kind: str | None = None
     bodies: list[Any] = field(default_factory=list)
     names: dict[str, Name] = field(default_factory=dict)
     children: list[Scope] = field(default_factory=list)
-    events: list[Declared] = field(default_factory=list)
+    events: list[Declaration] = field(default_factory=list)
     plant: sct.Plant | None = None
     definition: Any = None
     #: The enclosing scope by its absolute name.
@@ -97,7 +97,7 @@ class Scope:
                     yield declaration
 
 
-Name: TypeAlias = "Declared | Argument | Scope | sct.Location | ex.EnumerationLiteral"
+Name: TypeAlias = "Declaration | Argument | Scope | sct.Location | ex.EnumerationLiteral"
 
 
 def plain(identifier: str) -> str:
@@ -105,7 +105,7 @@ def plain(identifier: str) -> str:
     return identifier.replace("$", "")
 
 
-def _meant(name: str, position: int, known: Iterable[str]) -> Repair | None:
+def _similar_name(name: str, position: int, known: Iterable[str]) -> Repair | None:
     """Return the repair that replaces one part of a name by the closest known name, or None if none is close."""
     absolute = name[0] if name[0] in ".^" else ""
     parts = name.lstrip(".^").split(".")
@@ -144,15 +144,15 @@ class Specification:
 
     def make_instances(self) -> None:
         """Declare the contents of the instances of definitions."""
-        for read, around, scope in self._instances:  # `_instantiate` extends the list during the loop.
+        for node, around, scope in self._instances:  # `_instantiate` extends the list during the loop.
             with self.reporting():
-                self._instantiate(read, around, scope)
+                self._instantiate(node, around, scope)
         # The outermost instance comes first, so that each argument is looked up only once.
         for _, _, scope in self._instances:
             for argument in scope.around.names.values() if scope.around else ():
                 if isinstance(argument, Argument) and not _is_algebraic(argument):
                     try:
-                        argument.named = self.resolved(argument)
+                        argument.named = self.resolve(argument)
                     except CifFaultError as fault:
                         argument.named = fault
 
@@ -164,39 +164,42 @@ class Specification:
         except CifFaultError as fault:
             self.findings[fault.finding()] = None
 
-    def find(self, read: Any, scope: Scope) -> Name:
+    def find(self, node: Any, scope: Scope) -> Name:
         """Return the element that a name of the grammar refers to in a scope. Raises CifFaultError."""
-        return self.lookup(plain(read.text), read, scope)
+        return self.lookup(plain(node.text), node, scope)
 
-    def lookup(self, name: str, read: Any, scope: Scope) -> Name:
+    def lookup(self, name: str, node: Any, scope: Scope) -> Name:
         """Return the element that a name as text refers to in a scope. Raises CifFaultError."""
         first, *others = name.lstrip(".^").split(".")
         known: Scope | None = self._beginning(name, scope)
-        found: Name | None = None
+        named: Name | None = None
         seen: set[str] = set()
-        while known is not None and found is None:
-            found = known.names.get(first)
+        while known is not None and named is None:
+            named = known.names.get(first)
             seen.update(known.names)
             known = None if name[0] in ".^" else known.around
-        if found is None:
-            repair = _meant(name, 0, seen)
+        if named is None:
+            repair = _similar_name(name, 0, seen)
             if repair is None and name[0] == "." and first in self.root.names:
                 repair = Repair(
                     f"in a definition, `.` starts there; from the root of the file, write `^{name[1:]}`", f"^{name[1:]}"
                 )
-            raise CifFaultError(read, "unresolved-reference", f"there is no `{first}` here", repair)
+            raise CifFaultError(node, "unresolved-reference", f"there is no `{first}` here", repair)
         whole = first
         for position, part in enumerate(others, 1):
-            inside = self.resolved(found)
+            inside = self.resolve(named)
             if not isinstance(inside, Scope):
                 raise CifFaultError(
-                    read, "unresolved-reference", f"`{whole}` is neither a group nor an automaton: it has no members"
+                    node, "unresolved-reference", f"`{whole}` is neither a group nor an automaton: it has no members"
                 )
             if part not in inside.names:
-                message, repair = f"there is no `{part}` in `{inside.path}`", _meant(name, position, inside.names)
-                raise CifFaultError(read, "unresolved-reference", message, repair)
-            found, whole = inside.names[part], f"{whole}.{part}"
-        return self.resolved(found)
+                message, repair = (
+                    f"there is no `{part}` in `{inside.path}`",
+                    _similar_name(name, position, inside.names),
+                )
+                raise CifFaultError(node, "unresolved-reference", message, repair)
+            named, whole = inside.names[part], f"{whole}.{part}"
+        return self.resolve(named)
 
     def _beginning(self, name: str, scope: Scope) -> Scope:
         """Return the scope in which the search for a name begins.
@@ -209,19 +212,19 @@ class Specification:
             scope = scope.around
         return scope
 
-    def resolved(self, found: Name) -> Name:
+    def resolve(self, name: Name) -> Name:
         """Return the element behind a parameter that is not algebraic, through all instances."""
-        while isinstance(found, Argument) and not _is_algebraic(found):
-            if isinstance(found.named, CifFaultError):
-                raise found.named
-            if found.named is not None:
-                return found.named
-            value = found.read.first.value
-            is_name = not found.read.others and not found.read.first.openings and not found.read.first.closings
+        while isinstance(name, Argument) and not _is_algebraic(name):
+            if isinstance(name.named, CifFaultError):
+                raise name.named
+            if name.named is not None:
+                return name.named
+            value = name.node.first.value
+            is_name = not name.node.others and not name.node.first.openings and not name.node.first.closings
             if not is_name or type(value).__name__ != "Reference" or value.suffix:
-                raise CifFaultError(found.read, "type", "the parameter expects a name")
-            found = self.find(value.name, found.scope)
-        return found
+                raise CifFaultError(name.node, "type", "the parameter expects a name")
+            name = self.find(value.name, name.scope)
+        return name
 
     # Declarations
 
@@ -230,111 +233,111 @@ class Specification:
             with self.reporting():
                 self._declare_one(scope, declaration)
 
-    def _declare_one(self, scope: Scope, read: Any) -> None:
-        rule = type(read).__name__
+    def _declare_one(self, scope: Scope, node: Any) -> None:
+        rule = type(node).__name__
         match rule:
             case "Group":
-                group = self._inner(plain(read.name), scope, read)
-                group.bodies.append(read)
-                self._declare(group, read)
+                group = self._inner(plain(node.name), scope, node)
+                group.bodies.append(node)
+                self._declare(group, node)
             case "Automaton":
-                self._automaton(self._scope(plain(read.name), scope, read), read)
+                self._automaton(self._scope(plain(node.name), scope, node), node)
             case "Instance":
-                made = self._scope(plain(read.name), scope, read, bare=True)
-                self._instances.append((read, scope, made))
+                instance = self._scope(plain(node.name), scope, node, bare=True)
+                self._instances.append((node, scope, instance))
             case "Continuous":
-                raise construct(read, "continuous variables", "use them only in simulation, or model time by events")
+                raise construct(node, "continuous variables", "use them only in simulation, or model time by events")
             case "Function":
-                raise construct(read, "functions", "write an algebraic variable for its result")
+                raise construct(node, "functions", "write an algebraic variable for its result")
             case _:
-                self._declare_names(scope, read, rule)
+                self._declare_names(scope, node, rule)
 
-    def _declare_names(self, scope: Scope, read: Any, rule: str) -> None:
+    def _declare_names(self, scope: Scope, node: Any, rule: str) -> None:
         """Declare the named elements that are neither groups nor automata."""
         match rule:
             case "GroupDefinition" | "AutomatonDefinition" | "Enumeration":
-                whole = self._name(rule, read, read, scope)
-                for literal in read.literals if rule == "Enumeration" else ():
+                whole = self._name(rule, node, node, scope)
+                for literal in node.literals if rule == "Enumeration" else ():
                     self._name("Literal", literal, whole, scope)
             case "Events":
-                for name in read.names:
-                    scope.events.append(self._name(rule, name, read, scope))
-                if read.type is not None:
-                    raise construct(read, "channels", CHANNELS)
+                for name in node.names:
+                    scope.events.append(self._name(rule, name, node, scope))
+                if node.type is not None:
+                    raise construct(node, "channels", CHANNELS)
             case _ if rule in _LISTS:
-                for declaration in getattr(read, _LISTS[rule]):
-                    self._name(rule, declaration, read, scope)
+                for declaration in getattr(node, _LISTS[rule]):
+                    self._name(rule, declaration, node, scope)
 
     @staticmethod
-    def _name(rule: str, read: Any, outer: Any, scope: Scope) -> Declared:
-        declared = Declared(rule, plain(read.name), read, outer, scope)
-        _once(scope, declared.name, read)
+    def _name(rule: str, node: Any, outer: Any, scope: Scope) -> Declaration:
+        declared = Declaration(rule, plain(node.name), node, outer, scope)
+        _once(scope, declared.name, node)
         scope.names[declared.name] = declared
         return declared
 
-    def _inner(self, name: str, scope: Scope, read: Any) -> Scope:
+    def _inner(self, name: str, scope: Scope, node: Any) -> Scope:
         """Return the group of a name; contributions of several texts to one group are merged."""
         known = scope.names.get(name)
         if not isinstance(known, Scope) or known.kind is not None or known.definition is not None:
-            known = self._scope(name, scope, read, bare=True)
+            known = self._scope(name, scope, node, bare=True)
         return known
 
-    def _scope(self, name: str, scope: Scope, read: Any, *, bare: bool = False) -> Scope:
-        _once(scope, name, read)
-        made = Scope(scope.absolute(name), scope, read, parent=scope)
+    def _scope(self, name: str, scope: Scope, node: Any, *, bare: bool = False) -> Scope:
+        _once(scope, name, node)
+        inner = Scope(scope.absolute(name), scope, node, parent=scope)
         self._scopes += 1
         if self._scopes > _MOST:
-            raise CifFaultError(read, "cif-construct", f"there are more than {_MOST} groups, automata and instances")
-        scope.names[name] = made
-        scope.children.append(made)
+            raise CifFaultError(node, "cif-construct", f"there are more than {_MOST} groups, automata and instances")
+        scope.names[name] = inner
+        scope.children.append(inner)
         if not bare:
-            made.bodies.append(read)
-        return made
+            inner.bodies.append(node)
+        return inner
 
-    def _automaton(self, scope: Scope, read: Any) -> None:
+    def _automaton(self, scope: Scope, node: Any) -> None:
         """Declare an automaton or an instance of one, including its locations, which are names too."""
-        scope.kind = read.kind or ""
-        made = sct.PlantKind.requirement if read.kind == "requirement" else sct.PlantKind.behaviour
-        scope.plant = sct.Plant(name=scope.path, kind=made, source=located(scope.read))
-        self._declare(scope, read)
-        for number, location in enumerate(read.locations):
+        scope.kind = node.kind or ""
+        plant_kind = sct.PlantKind.requirement if node.kind == "requirement" else sct.PlantKind.behaviour
+        scope.plant = sct.Plant(name=scope.path, kind=plant_kind, source=place_of(scope.node))
+        self._declare(scope, node)
+        for number, location in enumerate(node.locations):
             name = plain(location.name) if location.name else "L"
-            element = sct.Location(name=name, initial=False, marked=False, source=located(location))
+            element = sct.Location(name=name, initial=False, marked=False, source=place_of(location))
             scope.plant.locations.append(element)
             if location.name:
                 with self.reporting():
                     _once(scope, name, location)
                 scope.names[name] = element
-            elif len(read.locations) > 1:
+            elif len(node.locations) > 1:
                 element.name = f"L{number}"
                 with self.reporting():
                     message = "a location without a name is the only one"
                     raise CifFaultError(location, "cif-declaration", message, "write a name")
 
-    def _instantiate(self, read: Any, around: Scope, scope: Scope) -> None:
-        found = self.find(read.definition, around)
-        if not isinstance(found, Declared) or found.kind not in ("GroupDefinition", "AutomatonDefinition"):
-            raise CifFaultError(read.definition, "type", f"`{read.definition.text}` is not a definition")
-        definition = found.read
+    def _instantiate(self, node: Any, around: Scope, scope: Scope) -> None:
+        named = self.find(node.definition, around)
+        if not isinstance(named, Declaration) or named.kind not in ("GroupDefinition", "AutomatonDefinition"):
+            raise CifFaultError(node.definition, "type", f"`{node.definition.text}` is not a definition")
+        definition = named.node
         inside: Scope | None = around
         while inside is not None:
             if inside.definition is definition:
-                raise CifFaultError(read, "cyclic-definition", f"`{plain(definition.name)}` contains itself")
+                raise CifFaultError(node, "cyclic-definition", f"`{plain(definition.name)}` contains itself")
             inside = inside.parent
         parameters = [(parameter, name) for parameter in definition.parameters for name in parameter.names]
-        if len(parameters) != len(read.arguments):
-            wanted = f"{len(parameters)} argument{'' if len(parameters) == 1 else 's'}"
+        if len(parameters) != len(node.arguments):
+            expectation = f"{len(parameters)} argument{'' if len(parameters) == 1 else 's'}"
             raise CifFaultError(
-                read, "argument", f"`{read.definition.text}` takes {wanted}, found {len(read.arguments)}"
+                node, "argument", f"`{node.definition.text}` takes {expectation}, found {len(node.arguments)}"
             )
         scope.bodies.append(definition)
         scope.definition = definition
         # Names in the definition are looked up around the definition. Its parameters take precedence.
-        inner = Scope(scope.path, found.scope, read)
-        for (parameter, name), argument in zip(parameters, read.arguments, strict=True):
+        inner = Scope(scope.path, named.scope, node)
+        for (parameter, name), argument in zip(parameters, node.arguments, strict=True):
             inner.names[plain(name.name)] = Argument(argument, around, parameter)
         scope.around = inner
-        if found.kind == "AutomatonDefinition":
+        if named.kind == "AutomatonDefinition":
             self._automaton(scope, definition)
         else:
             self._declare(scope, definition)
@@ -344,6 +347,6 @@ def _is_algebraic(argument: Argument) -> bool:
     return type(argument.parameter).__name__ == "AlgebraicParameter"
 
 
-def _once(scope: Scope, name: str, read: Any) -> None:
+def _once(scope: Scope, name: str, node: Any) -> None:
     if name in scope.names:
-        raise CifFaultError(read, "cif-declaration", f"the name `{name}` is declared twice", "rename one of them")
+        raise CifFaultError(node, "cif-declaration", f"the name `{name}` is declared twice", "rename one of them")

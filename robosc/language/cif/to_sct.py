@@ -20,29 +20,29 @@ from robosc.language.cif.faults import (
     TAU,
     CifFaultError,
     construct,
-    located,
+    place_of,
     span,
     text_of,
 )
 from robosc.language.cif.parsing import identifier
-from robosc.language.cif.scopes import Declared, Scope, Specification, plain
+from robosc.language.cif.scopes import Declaration, Scope, Specification, plain
 from robosc.language.cif.values import Values, computed_from_itself, constant_value, literal
-from robosc.language.explaining import closest
+from robosc.language.syntax_messages import closest
 from robosc.model import expression as ex
 from robosc.model import sct
-from robosc.model.semantics.cif_types import Type, contains, overlap, shown
+from robosc.model.semantics.cif_types import Type, contains, format_type, overlap
 from robosc.model.semantics.domains import domain
 from robosc.model.semantics.edges import edges_by_event
 from robosc.model.semantics.naming import Names
 from robosc.model.semantics.printing import conjunction, disjunction
-from robosc.model.semantics.walks import copied
+from robosc.model.semantics.walks import copy_tree
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
 
 @dataclass
-class _Taken:
+class _EventEdge:
     """An edge of the text for one of its events.
 
     `fits` has the condition under which each variable stays in range.
@@ -54,7 +54,7 @@ class _Taken:
     fits: dict[sct.DiscreteVariable, ex.Expression]
     updates: list[tuple[sct.DiscreteVariable, ex.Expression, Any]]
     target: sct.Location
-    read: Any
+    node: Any
 
 
 def to_sct(names: Specification, name: str, *, supervised: bool = False) -> sct.SupervisoryControlModel:
@@ -62,16 +62,16 @@ def to_sct(names: Specification, name: str, *, supervised: bool = False) -> sct.
 
     If the specification may be `supervised`, supervisor automata become plants.
     """
-    return _Transformation(names, name, supervised=supervised).model
+    return _CifToSct(names, name, supervised=supervised).model
 
 
-class _Transformation:
+class _CifToSct:
     def __init__(self, names: Specification, name: str, *, supervised: bool) -> None:
         self._names = names
         self._supervised = supervised
         self._values = Values(names)
         self.model = sct.SupervisoryControlModel(name=name)
-        self._controllable: dict[sct.Event, Declared] = {}
+        self._controllable: dict[sct.Event, Declaration] = {}
         self._exclusions: dict[sct.Event, list[tuple[Any, ex.Expression]]] = {}
         self._plant_invariants: list[tuple[Any, ex.Expression]] = []
         scopes = list(_inside(names.root))
@@ -101,20 +101,20 @@ class _Transformation:
         """Create the events, variables and inputs of a scope."""
         if scope.kind == "supervisor" and not self._supervised:
             with self._names.reporting():
-                raise construct(scope.read, "supervisor automata", SUPERVISORS)
+                raise construct(scope.node, "supervisor automata", SUPERVISORS)
         if scope.kind == "":
             with self._names.reporting():
-                raise construct(scope.read, "automata of no kind", "write `plant` or `requirement` before it")
+                raise construct(scope.node, "automata of no kind", "write `plant` or `requirement` before it")
         for declared in scope.events:
             control = declared.outer.control
             kind = sct.EventKind.plain
             event = sct.Event(
-                name=declared.name, controllable=control == "controllable", kind=kind, source=located(declared.read)
+                name=declared.name, controllable=control == "controllable", kind=kind, source=place_of(declared.node)
             )
-            declared.made = event
+            declared.element = event
             self._controllable[event] = declared
         for known in scope.names.values():
-            if isinstance(known, Declared) and known.kind in ("Variables", "Inputs"):
+            if isinstance(known, Declaration) and known.kind in ("Variables", "Inputs"):
                 # Until the type is known, only expressions in the type itself can read the variable.
                 known.fault = computed_from_itself(known)
                 try:
@@ -131,15 +131,15 @@ class _Transformation:
             scope.plant.locations.append(sct.Location(name="L", initial=True, marked=True))
         return scope.plant
 
-    def _variable(self, declared: Declared, scope: Scope) -> None:
+    def _variable(self, declared: Declaration, scope: Scope) -> None:
         declared.type = self._values.declared_type(declared.outer.type, scope)
         if declared.type == "int":
             raise construct(declared.outer.type, "an int without range", "write `int[lowest..highest]`")
         plant = self._plant(scope)
-        source = located(declared.read)
-        made = sct.DiscreteVariable(name=declared.name, type=_type(declared.type), source=source)
-        plant.variables.append(made)
-        declared.made = made
+        source = place_of(declared.node)
+        variable = sct.DiscreteVariable(name=declared.name, type=_type(declared.type), source=source)
+        plant.variables.append(variable)
+        declared.element = variable
         if declared.kind == "Inputs":
             value = sct.Input(name=declared.name, type=_type(declared.type), source=source)
             plant.inputs.append(value)
@@ -149,12 +149,12 @@ class _Transformation:
             plant.events.append(event)
             for location in plant.locations:
                 edge = sct.Edge(event=event, target=location, source=source)
-                edge.updates.append(sct.Update(variable=made, value=sct.InputReference(input=value), source=source))
+                edge.updates.append(sct.Update(variable=variable, value=sct.InputReference(input=value), source=source))
                 location.edges.append(edge)
 
     def _keep(self, scope: Scope, used: set[sct.Event]) -> None:
         """Add the scope's plant to the model, with those of its events that can happen."""
-        events = [declared.made for declared in scope.events if declared.made in used]
+        events = [declared.element for declared in scope.events if declared.element in used]
         if events:
             plant = self._plant(scope)
             inputs = list(plant.events)
@@ -177,8 +177,12 @@ class _Transformation:
     def _enumerations(self) -> None:
         for scope in _inside(self._names.root):
             for declared in scope.names.values():
-                if isinstance(declared, Declared) and declared.kind == "Enumeration" and declared.made is not None:
-                    self.model.enumerations.append(declared.made)
+                if (
+                    isinstance(declared, Declaration)
+                    and declared.kind == "Enumeration"
+                    and declared.element is not None
+                ):
+                    self.model.enumerations.append(declared.element)
 
     # Automata
 
@@ -186,11 +190,13 @@ class _Transformation:
         """Create the initial values and edges of an automaton."""
         for declared in scope.names.values():
             with self._names.reporting():
-                if isinstance(declared, Declared) and declared.kind in ("Constants", "Algebraics"):
+                if isinstance(declared, Declaration) and declared.kind in ("Constants", "Algebraics"):
                     self._values.known(declared)
-                elif isinstance(declared, Declared) and declared.kind == "Variables" and declared.made is not None:
+                elif (
+                    isinstance(declared, Declaration) and declared.kind == "Variables" and declared.element is not None
+                ):
                     self._initialise(declared, scope)
-        taken: list[_Taken] = []
+        taken: list[_EventEdge] = []
         initial = False
         for location, element in _elements(scope):
             initial = initial or type(element).__name__ == "LocationInitial"
@@ -201,9 +207,9 @@ class _Transformation:
             self._edges_of(taken, scope)
             if not initial:
                 message = f"`{scope.path}` has no initial location"
-                raise CifFaultError(scope.read, "initial-state", message, "write `initial;` in one location")
+                raise CifFaultError(scope.node, "initial-state", message, "write `initial;` in one location")
 
-    def _edges_of(self, taken: list[_Taken], scope: Scope) -> None:
+    def _edges_of(self, taken: list[_EventEdge], scope: Scope) -> None:
         """Create the edges and the requirements of an automaton."""
         used = self._alphabet(taken, scope)
         watched = self._events(scope, "Monitor")
@@ -216,59 +222,59 @@ class _Transformation:
             if requirement and event not in (watched or ()):
                 self._require(edges, event, scope)
 
-    def _alphabet(self, taken: Iterable[_Taken], scope: Scope) -> list[sct.Event]:
+    def _alphabet(self, taken: Iterable[_EventEdge], scope: Scope) -> list[sct.Event]:
         """Return the events in which an automaton takes part."""
         declared = self._events(scope, "Alphabet")
         for edge in taken:
             if declared is not None and edge.event not in declared:
                 message = f"`{edge.event.name}` is not in the alphabet of `{scope.path}`"
                 with self._names.reporting():
-                    raise CifFaultError(edge.read, "cif-declaration", message, "add it there")
+                    raise CifFaultError(edge.node, "cif-declaration", message, "add it there")
         return list(dict.fromkeys(edge.event for edge in taken)) if declared is None else declared
 
     def _events(self, scope: Scope, rule: str) -> list[sct.Event] | None:
-        found = [self._event(name, scope) for declaration in scope.declarations(rule) for name in declaration.events]
-        return list(dict.fromkeys(found)) if any(True for _ in scope.declarations(rule)) else None
+        events = [self._event(name, scope) for declaration in scope.declarations(rule) for name in declaration.events]
+        return list(dict.fromkeys(events)) if any(True for _ in scope.declarations(rule)) else None
 
     def _event(self, name: Any, scope: Scope) -> sct.Event:
-        found = self._names.find(name, scope)
-        if not isinstance(found, Declared) or found.kind != "Events":
+        declared = self._names.find(name, scope)
+        if not isinstance(declared, Declaration) or declared.kind != "Events":
             raise CifFaultError(name, "type", f"`{name.text}` is not an event")
-        if not found.outer.control:
-            hint = f"declare `{found.name}` as `controllable` or as `uncontrollable`"
+        if not declared.outer.control:
+            hint = f"declare `{declared.name}` as `controllable` or as `uncontrollable`"
             raise construct(name, "events that are neither controllable nor uncontrollable", hint)
-        event: sct.Event = found.made
+        event: sct.Event = declared.element
         return event
 
-    def _taken(self, read: Any, location: sct.Location, scope: Scope) -> Iterator[_Taken]:
-        if not read.events or any(edge_event.tau for edge_event in read.events):
-            raise construct(read, "edges without an event", TAU)
-        if read.urgent:
-            raise construct(read, "urgent edges", "leave out `now`")
-        for edge_event in read.events:
+    def _taken(self, node: Any, location: sct.Location, scope: Scope) -> Iterator[_EventEdge]:
+        if not node.events or any(edge_event.tau for edge_event in node.events):
+            raise construct(node, "edges without an event", TAU)
+        if node.urgent:
+            raise construct(node, "urgent edges", "leave out `now`")
+        for edge_event in node.events:
             if edge_event.communication:
                 raise construct(edge_event, "channels", CHANNELS)
-        events = [self._event(edge_event.event, scope) for edge_event in read.events]
+        events = [self._event(edge_event.event, scope) for edge_event in node.events]
         target = location
-        if read.target is not None:
-            name = plain(read.target.name)
-            found = scope.names.get(name)
-            if not isinstance(found, sct.Location):
+        if node.target is not None:
+            name = plain(node.target.name)
+            location_named = scope.names.get(name)
+            if not isinstance(location_named, sct.Location):
                 known = [sibling.name for sibling in location.eContainer().locations]
-                raise CifFaultError(read.target, "unresolved-reference", *_missing(name, known))
-            target = found
-        guard = self._values.condition(read.guards, scope)
-        updates, fits = self._updates(read, scope)
+                raise CifFaultError(node.target, "unresolved-reference", *_missing(name, known))
+            target = location_named
+        guard = self._values.condition(node.guards, scope)
+        updates, fits = self._updates(node, scope)
         for event in dict.fromkeys(events):
-            yield _Taken(location, event, guard, fits, updates, target, read)
+            yield _EventEdge(location, event, guard, fits, updates, target, node)
 
     def _updates(
-        self, read: Any, scope: Scope
+        self, node: Any, scope: Scope
     ) -> tuple[list[tuple[sct.DiscreteVariable, ex.Expression, Any]], dict[sct.DiscreteVariable, ex.Expression]]:
         """Return the updates of an edge, and the conditions under which variables stay in range."""
         updates: list[tuple[sct.DiscreteVariable, ex.Expression, Any]] = []
         fits: dict[sct.DiscreteVariable, ex.Expression] = {}
-        for update in read.updates:
+        for update in node.updates:
             variable, value, kind = self._update(update, scope)
             if any(variable is other for other, _, _ in updates):
                 raise CifFaultError(update, "repeated-assignment", f"`{variable.name}` is assigned twice")
@@ -278,57 +284,59 @@ class _Transformation:
                 fits[variable] = within
         return updates, fits
 
-    def _update(self, read: Any, scope: Scope) -> tuple[sct.DiscreteVariable, ex.Expression, Type]:
-        if read.conditional:
-            raise construct(read, "conditional updates", CONDITIONAL_UPDATES)
-        if read.several or read.projection:
-            raise construct(read, "updates of tuples and lists", "write a variable for each element")
-        found = self._names.find(read.variable, scope)
-        if not isinstance(found, Declared) or found.kind != "Variables":
-            raise CifFaultError(read, "type", f"`{read.variable.text}` is not a discrete variable")
-        if found.made is None:
-            raise found.fault
-        if found.made.eContainer() is not scope.plant:
-            message = f"`{read.variable.text}` is assigned by `{found.scope.path}` only, which declares it"
-            raise CifFaultError(read, "assignment-scope", message)
-        value = self._values.whole(read.value, scope)
-        if not overlap(found.type, value.type):
-            message = f"`{found.name}` is {shown(found.type)}, the assigned value {shown(value.type)}"
-            raise CifFaultError(read, "type", message)
-        return found.made, value.expression, value.type
+    def _update(self, node: Any, scope: Scope) -> tuple[sct.DiscreteVariable, ex.Expression, Type]:
+        if node.conditional:
+            raise construct(node, "conditional updates", CONDITIONAL_UPDATES)
+        if node.several or node.projection:
+            raise construct(node, "updates of tuples and lists", "write a variable for each element")
+        declared = self._names.find(node.variable, scope)
+        if not isinstance(declared, Declaration) or declared.kind != "Variables":
+            raise CifFaultError(node, "type", f"`{node.variable.text}` is not a discrete variable")
+        if declared.element is None:
+            raise declared.fault
+        if declared.element.eContainer() is not scope.plant:
+            message = f"`{node.variable.text}` is assigned by `{declared.scope.path}` only, which declares it"
+            raise CifFaultError(node, "assignment-scope", message)
+        value = self._values.whole(node.value, scope)
+        if not overlap(declared.type, value.type):
+            message = f"`{declared.name}` is {format_type(declared.type)}, the assigned value {format_type(value.type)}"
+            raise CifFaultError(node, "type", message)
+        return declared.element, value.expression, value.type
 
-    def _place(self, edges: list[_Taken], event: sct.Event, scope: Scope, *, watching: bool) -> None:
+    def _place(self, edges: list[_EventEdge], event: sct.Event, scope: Scope, *, watching: bool) -> None:
         """Create the edges of an event in a plant; if it monitors the event, it stays if no edge can be taken."""
         plant = scope.plant
         assert plant is not None
         for edge in edges:
-            guard = None if edge.guard is None else copied(edge.guard)
-            made = sct.Edge(event=event, guard=guard, target=edge.target, source=located(edge.read))
-            for variable, value, read in edge.updates:
-                made.updates.append(sct.Update(variable=variable, value=copied(value), source=located(read)))
-            edge.location.edges.append(made)
+            guard = None if edge.guard is None else copy_tree(edge.guard)
+            placed = sct.Edge(event=event, guard=guard, target=edge.target, source=place_of(edge.node))
+            for variable, value, node in edge.updates:
+                placed.updates.append(sct.Update(variable=variable, value=copy_tree(value), source=place_of(node)))
+            edge.location.edges.append(placed)
             if edge.fits:
                 self._stay_in_range(edge, plant, alone=len(edges) == 1 and not watching)
         if watching:
             for location in plant.locations:
                 guards = [edge.guard for edge in edges if edge.location is location]
                 if all(guard is not None for guard in guards):
-                    others = [ex.Negation(operand=copied(guard)) for guard in guards if guard is not None]
-                    stay = sct.Edge(event=event, guard=conjunction(others), target=location, source=located(scope.read))
+                    others = [ex.Negation(operand=copy_tree(guard)) for guard in guards if guard is not None]
+                    stay = sct.Edge(
+                        event=event, guard=conjunction(others), target=location, source=place_of(scope.node)
+                    )
                     location.edges.append(stay)
         elif not edges:
             never = ex.BooleanLiteral(value=False)
             location = plant.locations[0]
-            location.edges.append(sct.Edge(event=event, guard=never, target=location, source=located(scope.read)))
+            location.edges.append(sct.Edge(event=event, guard=never, target=location, source=place_of(scope.node)))
 
-    def _stay_in_range(self, edge: _Taken, plant: sct.Plant, *, alone: bool) -> None:
+    def _stay_in_range(self, edge: _EventEdge, plant: sct.Plant, *, alone: bool) -> None:
         """Add the requirement that forbids an event if an edge would assign a value out of range.
 
         `alone` means that the plant has no other edge for the event, so that the event always takes this edge.
         """
-        fits = conjunction(map(copied, edge.fits.values()))
+        fits = conjunction(map(copy_tree, edge.fits.values()))
         assert fits is not None
-        premises = [*_at(edge.location, plant), *(copied(part) for part in (edge.guard,) if part is not None)]
+        premises = [*_at(edge.location, plant), *(copy_tree(part) for part in (edge.guard,) if part is not None)]
         premise = None if alone else conjunction(premises)
         self.model.requirements.append(
             sct.Requirement(
@@ -336,18 +344,18 @@ class _Transformation:
                 kind=sct.RequirementKind.needs,
                 condition=fits if premise is None else ex.Implication(left=premise, right=fits),
                 ranges=list(edge.fits),
-                text=f"range of {', '.join(variable.name for variable in edge.fits)}: {_words(edge.read)}",
-                source=located(edge.read),
+                text=f"range of {', '.join(variable.name for variable in edge.fits)}: {_words(edge.node)}",
+                source=place_of(edge.node),
             )
         )
 
-    def _require(self, edges: list[_Taken], event: sct.Event, scope: Scope) -> None:
+    def _require(self, edges: list[_EventEdge], event: sct.Event, scope: Scope) -> None:
         """Add the requirement that an event happens only if a requirement automaton has an edge for it."""
         plant = scope.plant
         assert plant is not None
         allowed = []
         for edge in edges:
-            guard = [copied(part) for part in (edge.guard,) if part is not None]
+            guard = [copy_tree(part) for part in (edge.guard,) if part is not None]
             here = conjunction([*_at(edge.location, plant), *guard])
             if here is None:
                 return
@@ -360,27 +368,28 @@ class _Transformation:
                 automaton=plant,
                 name=scope.path,
                 text=f"requirement {scope.path}",
-                source=located(scope.read),
+                source=place_of(scope.node),
             )
         )
 
-    def _initialise(self, declared: Declared, scope: Scope) -> None:
+    def _initialise(self, declared: Declaration, scope: Scope) -> None:
         """Set the initial value of a variable, or add an initial predicate if it can have several."""
-        variable, read = declared.made, declared.read
-        if read.any:
+        variable, node = declared.element, declared.node
+        if node.any:
             return
-        if not read.values:
+        if not node.values:
             variable.initial = literal(_default(declared.type))
             return
         several = []
-        for value in read.values:
-            made = self._values.whole(value, scope)
-            if not contains(declared.type, made.type):
-                constant = constant_value(made.expression)
+        for value in node.values:
+            typed = self._values.whole(value, scope)
+            if not contains(declared.type, typed.type):
+                constant = constant_value(typed.expression)
                 if not isinstance(declared.type, range) or constant is None or constant not in declared.type:
-                    message = f"`{declared.name}` is {shown(declared.type)}, its initial value {shown(made.type)}"
-                    raise CifFaultError(value, "integer-range" if isinstance(made.type, range) else "type", message)
-            several.append(made.expression)
+                    kind, value_kind = format_type(declared.type), format_type(typed.type)
+                    message = f"`{declared.name}` is {kind}, its initial value {value_kind}"
+                    raise CifFaultError(value, "integer-range" if isinstance(typed.type, range) else "type", message)
+            several.append(typed.expression)
         constants = [constant_value(value) for value in several]
         if len(several) == 1 and constants[0] is not None:
             variable.initial = literal(constants[0])
@@ -395,90 +404,90 @@ class _Transformation:
 
     def _predicates(self, scope: Scope) -> None:
         """Translate initial and marked states and the invariants."""
-        for read in scope.declarations("Initial", "Marked", "Invariants"):
+        for node in scope.declarations("Initial", "Marked", "Invariants"):
             with self._names.reporting():
-                if type(read).__name__ == "Invariants":
-                    self._invariants(read, scope, None)
+                if type(node).__name__ == "Invariants":
+                    self._invariants(node, scope, None)
                     continue
-                made = self._values.condition(read.conditions, scope)
-                assert made is not None
-                initial = type(read).__name__ == "Initial"
-                (self.model.initialPredicates if initial else self.model.markerPredicates).append(made)
+                predicate = self._values.condition(node.conditions, scope)
+                assert predicate is not None
+                initial = type(node).__name__ == "Initial"
+                (self.model.initialPredicates if initial else self.model.markerPredicates).append(predicate)
         for location, element in _elements(scope):
             with self._names.reporting():
                 self._element(element, location, scope)
 
-    def _element(self, read: Any, location: sct.Location, scope: Scope) -> None:
-        match type(read).__name__:
+    def _element(self, node: Any, location: sct.Location, scope: Scope) -> None:
+        match type(node).__name__:
             case "Invariants":
-                self._invariants(read, scope, location)
+                self._invariants(node, scope, location)
             case "Urgent":
-                raise construct(read, "urgent locations", "leave out `urgent`")
+                raise construct(node, "urgent locations", "leave out `urgent`")
             case "LocationInitial" | "LocationMarked" as kind:
                 initial = kind == "LocationInitial"
                 if initial:
                     location.initial = True
                 else:
                     location.marked = True
-                condition = self._values.condition(read.conditions, scope)
+                condition = self._values.condition(node.conditions, scope)
                 if condition is not None:
                     here = sct.LocationReference(location=location)
-                    made = ex.Implication(left=here, right=condition)
-                    (self.model.initialPredicates if initial else self.model.markerPredicates).append(made)
+                    implication = ex.Implication(left=here, right=condition)
+                    (self.model.initialPredicates if initial else self.model.markerPredicates).append(implication)
 
-    def _invariants(self, read: Any, scope: Scope, location: sct.Location | None) -> None:
-        if read.kind not in ("plant", "requirement"):
-            if read.kind:
-                raise construct(read, "supervisor invariants", SUPERVISORS)
+    def _invariants(self, node: Any, scope: Scope, location: sct.Location | None) -> None:
+        if node.kind not in ("plant", "requirement"):
+            if node.kind:
+                raise construct(node, "supervisor invariants", SUPERVISORS)
             what = "invariants of no kind"
-            raise construct(read, what, "write `requirement` before it, or `plant` if the system itself ensures it")
-        for invariant in read.invariants:
+            raise construct(node, what, "write `requirement` before it, or `plant` if the system itself ensures it")
+        for invariant in node.invariants:
             with self._names.reporting():
-                self._invariant(invariant, read.kind == "plant", scope, location)
+                self._invariant(invariant, node.kind == "plant", scope, location)
 
-    def _invariant(self, read: Any, plant: bool, scope: Scope, location: sct.Location | None) -> None:
-        told = read.restriction
-        condition = self._values.condition([told.condition], scope)
+    def _invariant(self, node: Any, plant: bool, scope: Scope, location: sct.Location | None) -> None:
+        restriction = node.restriction
+        condition = self._values.condition([restriction.condition], scope)
         assert condition is not None
         here = sct.LocationReference(location=location) if location is not None else None
-        stated: dict[str, Any] = {
-            "name": scope.absolute(plain(read.name)) if read.name else None,
-            "text": _words(read.parent if len(read.parent.invariants) == 1 else read),
-            "source": located(read),
+        attributes: dict[str, Any] = {
+            "name": scope.absolute(plain(node.name)) if node.name else None,
+            "text": _words(node.parent if len(node.parent.invariants) == 1 else node),
+            "source": place_of(node),
         }
-        rule = type(told).__name__
+        rule = type(restriction).__name__
         if rule == "Condition":
             condition = condition if here is None else ex.Implication(left=here, right=condition)
             if plant:
-                self._plant_invariants.append((read, condition))
+                self._plant_invariants.append((node, condition))
                 return
-            self.model.invariants.append(sct.StateInvariant(condition=condition, **stated))
+            self.model.invariants.append(sct.StateInvariant(condition=condition, **attributes))
             return
         needs = rule == "Needs"
         if here is not None:
             combine = ex.Implication if needs else ex.Conjunction
             condition = combine(left=here, right=condition)
-        for name in told.events:
+        for name in restriction.events:
             event = self._event(name, scope)
             if plant:
-                own = copied(condition)
-                self._exclusions.setdefault(event, []).append((read, own if needs else ex.Negation(operand=own)))
+                own = copy_tree(condition)
+                self._exclusions.setdefault(event, []).append((node, own if needs else ex.Negation(operand=own)))
                 continue
             kind = sct.RequirementKind.needs if needs else sct.RequirementKind.disables
             self.model.requirements.append(
-                sct.Requirement(event=event, kind=kind, condition=copied(condition), **stated)
+                sct.Requirement(event=event, kind=kind, condition=copy_tree(condition), **attributes)
             )
 
     def _keep_invariants(self, plants: list[sct.Plant]) -> None:
         """Make the system start in and never leave its plant invariants."""
         edges = edges_by_event(plants)
-        for read, condition in self._plant_invariants:
+        for node, condition in self._plant_invariants:
             for event, excluding in plant_invariants.keep(condition, edges):
                 with self._names.reporting():
                     overlap = [edge for own in edges[event].values() for edge in own]
                     if excluding is None or (not event.controllable and _several(overlap)):
-                        raise construct(read, f"this plant invariant with `{event.name}`", "write it as guards")
-                    self._exclusions.setdefault(event, []).append((read, excluding))
+                        raise construct(node, f"this plant invariant with `{event.name}`", "write it as guards")
+                    self._exclusions.setdefault(event, []).append((node, excluding))
             self.model.initialPredicates.append(condition)
 
     def _exclude(self) -> None:
@@ -498,7 +507,7 @@ class _Transformation:
         for event, exclusions in self._exclusions.items():
             if event in used:
                 guard = conjunction(condition for _, condition in exclusions)
-                source = located(exclusions[0][0])
+                source = place_of(exclusions[0][0])
                 location.edges.append(sct.Edge(event=event, guard=guard, target=location, source=source))
         if location.edges:
             self.model.plants.append(plant)
@@ -520,8 +529,8 @@ def _is_automaton(scope: Scope) -> bool:
 def _elements(scope: Scope) -> Iterator[tuple[sct.Location, Any]]:
     """Yield the elements in the locations of an automaton, each with its location."""
     if _is_automaton(scope) and scope.plant is not None:
-        for location, read in zip(scope.plant.locations, scope.bodies[0].locations, strict=True):
-            for element in read.elements:
+        for location, node in zip(scope.plant.locations, scope.bodies[0].locations, strict=True):
+            for element in node.elements:
                 yield location, element
 
 
@@ -554,7 +563,7 @@ def _fitting(variable: sct.DiscreteVariable, value: ex.Expression, kind: Type) -
     if kind.stop - 1 > own.high:
         bounds.append((ex.LessOrEqual, own.high))
     for comparison, bound in bounds:
-        left, right = copied(value), literal(bound)
+        left, right = copy_tree(value), literal(bound)
         if isinstance(left, ex.Subtraction):
             if isinstance(left.right, ex.IntegerLiteral):
                 right = literal(left.right.value + bound)
@@ -577,10 +586,10 @@ def _default(kind: Type) -> Any:
     return kind.literals[0] if isinstance(kind, ex.Enumeration) else False
 
 
-def _words(read: Any) -> str:
+def _words(node: Any) -> str:
     """Return the text of an element in one line."""
-    start, end = span(read)
-    return " ".join(text_of(read).content[start:end].split()).rstrip(";").strip()
+    start, end = span(node)
+    return " ".join(text_of(node).content[start:end].split()).rstrip(";").strip()
 
 
 def _missing(name: str, known: list[str]) -> tuple[str, Any]:

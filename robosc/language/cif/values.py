@@ -5,15 +5,15 @@ from __future__ import annotations
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from robosc.language.cif.expressions import ExpressionReader, Typed, named
+from robosc.language.cif.expressions import ExpressionReader, TypedNode, referenced_names
 from robosc.language.cif.faults import CHANNELS, CifFaultError, construct
-from robosc.language.cif.scopes import Argument, Declared, Scope, Specification, plain
+from robosc.language.cif.scopes import Argument, Declaration, Scope, Specification, plain
 from robosc.model import expression as ex
 from robosc.model import sct
-from robosc.model.semantics.cif_types import BOOLEAN, LARGEST, Type, contains, shown
+from robosc.model.semantics.cif_types import BOOLEAN, LARGEST, Type, contains, format_type
 from robosc.model.semantics.evaluation import evaluate
 from robosc.model.semantics.printing import conjunction
-from robosc.model.semantics.walks import copied, parts
+from robosc.model.semantics.walks import copy_tree, parts
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -38,7 +38,7 @@ _MINMAX = {"min": min, "max": max}
 
 
 #: A constant, an algebraic variable, a named type, or the argument of an algebraic parameter.
-Definition: TypeAlias = Declared | Argument
+Definition: TypeAlias = Declaration | Argument
 
 
 class Values:
@@ -54,160 +54,160 @@ class Values:
         self._size = self._size_in_all = 0
         self._exhausted: CifFaultError | None = None
 
-    def typed(self, read: Any, scope: Scope) -> Typed:
+    def typed(self, node: Any, scope: Scope) -> TypedNode:
         """Return the value of an expression in a scope. Raises CifFaultError."""
-        made = self._nested(read, scope)
-        if isinstance(made.type, sct.Plant):
-            raise CifFaultError(read, "type", "an automaton is not a value", "name one of its locations")
-        return made
+        typed = self._nested(node, scope)
+        if isinstance(typed.type, sct.Plant):
+            raise CifFaultError(node, "type", "an automaton is not a value", "name one of its locations")
+        return typed
 
-    def whole(self, read: Any, scope: Scope) -> Typed:
+    def whole(self, node: Any, scope: Scope) -> TypedNode:
         """Return the value of an expression that has its own size limit. Raises CifFaultError."""
         self._size = 0
-        return self.typed(read, scope)
+        return self.typed(node, scope)
 
     def condition(self, reads: Sequence[Any], scope: Scope) -> ex.Expression | None:
         """Return the conjunction of boolean expressions, or None if there are none."""
-        made = []
-        for read in reads:
-            boolean = self.whole(read, scope)
+        conditions = []
+        for node in reads:
+            boolean = self.whole(node, scope)
             if boolean.type != BOOLEAN:
-                raise CifFaultError(read, "type", f"a condition is bool, this is {shown(boolean.type)}")
-            made.append(boolean.expression)
-        return conjunction(made)
+                raise CifFaultError(node, "type", f"a condition is bool, this is {format_type(boolean.type)}")
+            conditions.append(boolean.expression)
+        return conjunction(conditions)
 
-    def constant(self, read: Any, scope: Scope) -> tuple[Any, Type]:
+    def constant(self, node: Any, scope: Scope) -> tuple[Any, Type]:
         """Return the value of a constant expression, and its type."""
-        made = self.whole(read, scope)
-        value = constant_value(made.expression)
+        typed = self.whole(node, scope)
+        value = constant_value(typed.expression)
         if value is None:
-            raise CifFaultError(read, "type", "this is not a constant")
-        return value, range(value, value + 1) if isinstance(made.type, range) else made.type
+            raise CifFaultError(node, "type", "this is not a constant")
+        return value, range(value, value + 1) if isinstance(typed.type, range) else typed.type
 
-    def _nested(self, read: Any, scope: Scope) -> Typed:
-        reader = ExpressionReader(read, lambda value, switched: self._operand(value, scope, switched), self._grow)
+    def _nested(self, node: Any, scope: Scope) -> TypedNode:
+        reader = ExpressionReader(node, lambda value, switched: self._operand(value, scope, switched), self._grow)
         return reader.result
 
-    def _operand(self, read: Any, scope: Scope, switched: sct.Plant | None) -> Typed:
-        match type(read).__name__:
+    def _operand(self, node: Any, scope: Scope, switched: sct.Plant | None) -> TypedNode:
+        match type(node).__name__:
             case "Truth":
-                return Typed(read, ex.BooleanLiteral(value=read.value == "true"), BOOLEAN)
+                return TypedNode(node, ex.BooleanLiteral(value=node.value == "true"), BOOLEAN)
             case "Number":
-                value = int(read.value) if len(read.value) < 12 else LARGEST + 1
+                value = int(node.value) if len(node.value) < 12 else LARGEST + 1
                 if value > LARGEST:
-                    raise CifFaultError(read, "integer-range", "an int is at most 2147483647")
-                return Typed(read, ex.IntegerLiteral(value=value), range(value, value + 1))
+                    raise CifFaultError(node, "integer-range", "an int is at most 2147483647")
+                return TypedNode(node, ex.IntegerLiteral(value=value), range(value, value + 1))
             case "Parenthesis":
-                return self._nested(read.inner, scope)._replace(read=read)
+                return self._nested(node.inner, scope)._replace(node=node)
             case "Call":
-                return self._call(read, scope)
+                return self._call(node, scope)
             case "Reference":
-                return self._reference(read, scope, switched)
+                return self._reference(node, scope, switched)
             case "Own":
                 if scope.plant is None:
-                    raise CifFaultError(read, "type", "`self` is allowed only in automata")
-                return Typed(read, None, scope.plant)
-        raise construct(read, *_FOREIGN[type(read).__name__])
+                    raise CifFaultError(node, "type", "`self` is allowed only in automata")
+                return TypedNode(node, None, scope.plant)
+        raise construct(node, *_FOREIGN[type(node).__name__])
 
-    def _call(self, read: Any, scope: Scope) -> Typed:
-        name = read.function.strip()
+    def _call(self, node: Any, scope: Scope) -> TypedNode:
+        name = node.function.strip()
         if name not in ("min", "max", "abs"):
-            raise construct(read, f"the function `{name}`", "synthesis computes only `min`, `max` and `abs`")
-        given = [self._nested(argument, scope) for argument in read.arguments]
-        wanted = 1 if name == "abs" else 2
-        if len(given) != wanted:
+            raise construct(node, f"the function `{name}`", "synthesis computes only `min`, `max` and `abs`")
+        arguments = [self._nested(argument, scope) for argument in node.arguments]
+        count = 1 if name == "abs" else 2
+        if len(arguments) != count:
             raise CifFaultError(
-                read, "argument", f"`{name}` takes {wanted} argument{'s'[: wanted - 1]}, found {len(given)}"
+                node, "argument", f"`{name}` takes {count} argument{'s'[: count - 1]}, found {len(arguments)}"
             )
-        for argument, value in zip(read.arguments, given, strict=True):
+        for argument, value in zip(node.arguments, arguments, strict=True):
             if not isinstance(value.type, range):
                 raise CifFaultError(argument, "type", f"`{name}` expects an int")
-        made = ex.FunctionCall(function=name, arguments=[value.expression for value in given])
-        bounds = [(value.type.start, value.type.stop - 1) for value in given if isinstance(value.type, range)]
+        call = ex.FunctionCall(function=name, arguments=[value.expression for value in arguments])
+        bounds = [(value.type.start, value.type.stop - 1) for value in arguments if isinstance(value.type, range)]
         if name == "abs":
             [(low, high)] = bounds
-            return Typed(read, made, range(max(low, -high, 0), max(-low, high) + 1))
+            return TypedNode(node, call, range(max(low, -high, 0), max(-low, high) + 1))
         least, most = (_MINMAX[name](ends) for ends in zip(*bounds, strict=True))
-        return Typed(read, made, range(least, most + 1))
+        return TypedNode(node, call, range(least, most + 1))
 
-    def _reference(self, read: Any, scope: Scope, switched: sct.Plant | None) -> Typed:
-        if read.suffix:
-            what = _SUFFIXES[read.suffix[0]]
-            raise construct(read, what, "write an algebraic variable for its result")
+    def _reference(self, node: Any, scope: Scope, switched: sct.Plant | None) -> TypedNode:
+        if node.suffix:
+            what = _SUFFIXES[node.suffix[0]]
+            raise construct(node, what, "write an algebraic variable for its result")
         if switched is not None:
-            own = next((location for location in switched.locations if location.name == plain(read.name.text)), None)
+            own = next((location for location in switched.locations if location.name == plain(node.name.text)), None)
             if own is not None:
-                return Typed(read, sct.LocationReference(location=own), BOOLEAN)
-        made = self._value(read, self.names.find(read.name, scope))
-        if switched is not None and not isinstance(made.expression, sct.LocationReference):
-            raise CifFaultError(read, "type", f"`{read.name.text}` is not a location of `{switched.name}`")
-        return made
+                return TypedNode(node, sct.LocationReference(location=own), BOOLEAN)
+        typed = self._value(node, self.names.find(node.name, scope))
+        if switched is not None and not isinstance(typed.expression, sct.LocationReference):
+            raise CifFaultError(node, "type", f"`{node.name.text}` is not a location of `{switched.name}`")
+        return typed
 
-    def _value(self, read: Any, found: Any) -> Typed:
-        match found:
+    def _value(self, node: Any, named: Any) -> TypedNode:
+        match named:
             case sct.Location():
-                return Typed(read, sct.LocationReference(location=found), BOOLEAN)
+                return TypedNode(node, sct.LocationReference(location=named), BOOLEAN)
             case Scope(plant=sct.Plant() as plant):
-                return Typed(read, None, plant)
+                return TypedNode(node, None, plant)
             case Argument():
-                return self._copied(read, found)
-            case Declared(kind="Constants" | "Algebraics"):
-                return self._copied(read, found)
-            case Declared(kind="Variables" | "Inputs"):
-                if found.made is None:
+                return self._copied(node, named)
+            case Declaration(kind="Constants" | "Algebraics"):
+                return self._copied(node, named)
+            case Declaration(kind="Variables" | "Inputs"):
+                if named.element is None:
                     # A variable that is declared later has no fault yet, but a constant cannot read it.
-                    raise found.fault or CifFaultError(read, "type", "this is not a constant")
-                return Typed(read, sct.VariableReference(variable=found.made), found.type)
-            case Declared(kind="Literal"):
-                enumeration = self.enumeration(found.outer)
-                literal = next(literal for literal in enumeration.literals if literal.name == found.name)
-                return Typed(read, ex.EnumerationLiteralReference(literal=literal), enumeration)
-        raise CifFaultError(read, "type", f"`{read.name.text}` has no value")
+                    raise named.fault or CifFaultError(node, "type", "this is not a constant")
+                return TypedNode(node, sct.VariableReference(variable=named.element), named.type)
+            case Declaration(kind="Literal"):
+                enumeration = self.enumeration(named.outer)
+                literal = next(literal for literal in enumeration.literals if literal.name == named.name)
+                return TypedNode(node, ex.EnumerationLiteralReference(literal=literal), enumeration)
+        raise CifFaultError(node, "type", f"`{node.name.text}` has no value")
 
-    def _copied(self, read: Any, named: Definition) -> Typed:
-        made: Typed = self.known(named)
+    def _copied(self, node: Any, named: Definition) -> TypedNode:
+        typed: TypedNode = self.known(named)
         if named not in self._sizes:
-            self._sizes[named] = sum(1 for _ in parts(made.expression))
-        self._grow(read, self._sizes[named])
-        return Typed(read, copied(made.expression), made.type)
+            self._sizes[named] = sum(1 for _ in parts(typed.expression))
+        self._grow(node, self._sizes[named])
+        return TypedNode(node, copy_tree(typed.expression), typed.type)
 
-    def _grow(self, read: Any, more: int) -> None:
+    def _grow(self, node: Any, more: int) -> None:
         """Count the nodes that a name adds to an expression. Raises CifFaultError if a size limit is exceeded."""
         self._size += more
         self._size_in_all += more
         if self._size > _LARGEST:
-            raise _too_large(read, "the expression after its names are expanded", _LARGEST)
+            raise _too_large(node, "the expression after its names are expanded", _LARGEST)
         if self._size_in_all > _LARGEST_IN_ALL:
             what = "the specification after its names are expanded"
-            self._exhausted = self._exhausted or _too_large(read, what, _LARGEST_IN_ALL)
+            self._exhausted = self._exhausted or _too_large(node, what, _LARGEST_IN_ALL)
             raise self._exhausted
 
     # Definitions
 
-    def known(self, found: Definition) -> Any:
+    def known(self, named: Definition) -> Any:
         """Return the value of a constant, an algebraic variable or an argument, or the type behind a name.
 
         Its operands are settled first without recursion, because a chain of definitions may exceed Python's stack. The
         fault of a definition is reported once. Raises CifFaultError.
         """
-        if found not in self._known and found not in self._open:
-            self._settle(found)
-        if found not in self._known:
-            raise computed_from_itself(found)
-        made = self._known[found]
-        if isinstance(made, CifFaultError):
-            raise made
-        return made
+        if named not in self._known and named not in self._open:
+            self._settle(named)
+        if named not in self._known:
+            raise computed_from_itself(named)
+        value = self._known[named]
+        if isinstance(value, CifFaultError):
+            raise value
+        return value
 
-    def _settle(self, found: Definition) -> None:
-        path = {found: iter(self._uses(found))}
+    def _settle(self, named: Definition) -> None:
+        path = {named: iter(self._uses(named))}
         while path:
             last = next(reversed(path))
             used = next((used for used in path[last] if used not in self._known), None)
             if used is None:
                 del path[last]
                 if last not in self._known:
-                    self._known[last] = self._made(last)
+                    self._known[last] = self._create(last)
             elif used in path:
                 circle = list(path)
                 self._known |= {
@@ -216,91 +216,96 @@ class Values:
             elif used not in self._open:
                 path[used] = iter(self._uses(used))
 
-    def _uses(self, found: Definition) -> Iterator[Definition]:
+    def _uses(self, named: Definition) -> Iterator[Definition]:
         """Yield the definitions and arguments that one names, except those that are keys of a `switch`."""
-        scope = found.scope
-        types = [found.outer.type if found.kind != "Types" else found.read.type] if isinstance(found, Declared) else []
+        scope = named.scope
+        types = (
+            [named.outer.type if named.kind != "Types" else named.node.type] if isinstance(named, Declaration) else []
+        )
         reads = [
             bound for kind in types if type(kind).__name__ == "Integer" for bound in (kind.low, kind.high) if bound
         ]
         names = [kind.type for kind in types if type(kind).__name__ == "NamedType"]
-        if isinstance(found, Argument) or (found.kind != "Types" and found.read.value is not None):
-            reads.append(found.read if isinstance(found, Argument) else found.read.value)
-        elif found.kind == "Algebraics":
+        if isinstance(named, Argument) or (named.kind != "Types" and named.node.value is not None):
+            reads.append(named.node if isinstance(named, Argument) else named.node.value)
+        elif named.kind == "Algebraics":
             with suppress(CifFaultError):
-                reads += [equation for _, equation in self.equations(scope).get(found.name, ())]
-        for name in (*names, *(name for read in reads for name in named(read))):
+                reads += [equation for _, equation in self.equations(scope).get(named.name, ())]
+        for name in (*names, *(name for node in reads for name in referenced_names(node))):
             with suppress(CifFaultError):
                 used = self.names.find(name, scope)
-                if isinstance(used, Argument) or (isinstance(used, Declared) and used.kind in _DEFINED):
+                if isinstance(used, Argument) or (isinstance(used, Declaration) and used.kind in _DEFINED):
                     yield used
 
-    def _made(self, found: Definition) -> Any:
+    def _create(self, named: Definition) -> Any:
         """Return the value of a definition or an argument, or its fault."""
         if len(self._open) > _DEEPEST:
-            return CifFaultError(found.read, "cif-construct", "definitions are nested too deeply")
+            return CifFaultError(named.node, "cif-construct", "definitions are nested too deeply")
         before, self._size = self._size, 0
-        self._open.add(found)
+        self._open.add(named)
         try:
-            if isinstance(found, Argument):
-                return self.typed(found.read, found.scope)
-            if found.kind == "Types":
-                return self.declared_type(found.read.type, found.scope)
-            return self._computed(found)
+            if isinstance(named, Argument):
+                return self.typed(named.node, named.scope)
+            if named.kind == "Types":
+                return self.declared_type(named.node.type, named.scope)
+            return self._computed(named)
         except CifFaultError as fault:
             return fault
         finally:
-            self._open.remove(found)
+            self._open.remove(named)
             self._size = before
 
-    def _computed(self, found: Declared) -> Typed:
+    def _computed(self, declared: Declaration) -> TypedNode:
         """Return the value of a constant or an algebraic variable."""
-        kind = self.declared_type(found.outer.type, found.scope)
-        made = self._equation(found) if found.kind == "Algebraics" else self._fixed(found)
-        if not (isinstance(made.type, range) if kind == "int" else contains(kind, made.type)):
-            raise CifFaultError(found.read, "type", f"`{found.name}` is {shown(kind)}, its value {shown(made.type)}")
-        return made
+        kind = self.declared_type(declared.outer.type, declared.scope)
+        typed = self._equation(declared) if declared.kind == "Algebraics" else self._fixed(declared)
+        if not (isinstance(typed.type, range) if kind == "int" else contains(kind, typed.type)):
+            raise CifFaultError(
+                declared.node, "type", f"`{declared.name}` is {format_type(kind)}, its value {format_type(typed.type)}"
+            )
+        return typed
 
-    def _fixed(self, found: Declared) -> Typed:
-        value, kind = self.constant(found.read.value, found.scope)
-        return Typed(found.read, literal(value), kind)
+    def _fixed(self, declared: Declaration) -> TypedNode:
+        value, kind = self.constant(declared.node.value, declared.scope)
+        return TypedNode(declared.node, literal(value), kind)
 
-    def _equation(self, found: Declared) -> Typed:
+    def _equation(self, declared: Declaration) -> TypedNode:
         """Return the value of an algebraic variable from its declaration, an equation, or an equation per location."""
-        if found.read.value is not None:
-            return self.typed(found.read.value, found.scope)
-        equations = self.equations(found.scope).get(found.name, [])
+        if declared.node.value is not None:
+            return self.typed(declared.node.value, declared.scope)
+        equations = self.equations(declared.scope).get(declared.name, [])
         if not equations:
-            raise CifFaultError(found.read, "cif-declaration", f"`{found.name}` has no value", "add an equation for it")
-        made: Typed | None = None
-        for location, read in reversed(equations):
-            value = self.typed(read, found.scope)
-            if made is None or location is None:
-                made = value
+            message = f"`{declared.name}` has no value"
+            raise CifFaultError(declared.node, "cif-declaration", message, "add an equation for it")
+        result: TypedNode | None = None
+        for location, node in reversed(equations):
+            value = self.typed(node, declared.scope)
+            if result is None or location is None:
+                result = value
                 continue
-            if isinstance(value.type, range) and isinstance(made.type, range):
-                kind: Any = range(min(value.type.start, made.type.start), max(value.type.stop, made.type.stop))
+            if isinstance(value.type, range) and isinstance(result.type, range):
+                kind: Any = range(min(value.type.start, result.type.start), max(value.type.stop, result.type.stop))
             else:
                 kind = value.type
             condition = sct.LocationReference(location=location)
-            choice = ex.Conditional(condition=condition, then=value.expression, otherwise=made.expression)
-            made = Typed(found.read, choice, kind)
-        assert made is not None
-        return made
+            choice = ex.Conditional(condition=condition, then=value.expression, otherwise=result.expression)
+            result = TypedNode(declared.node, choice, kind)
+        assert result is not None
+        return result
 
     def equations(self, scope: Scope) -> dict[str, list[tuple[sct.Location | None, Any]]]:
         """Return the equations of a scope by variable; an equation in a location comes with that location."""
         if scope not in self._equations:
             known = self._equations[scope] = {}
-            told: list[tuple[sct.Location | None, Any]] = [
+            located_equations: list[tuple[sct.Location | None, Any]] = [
                 (None, equation) for declared in scope.declarations("Equations") for equation in declared.equations
             ]
             if scope.plant is not None and scope.kind is not None:
-                for location, read in zip(scope.plant.locations, scope.bodies[0].locations, strict=True):
-                    for element in read.elements:
+                for location, node in zip(scope.plant.locations, scope.bodies[0].locations, strict=True):
+                    for element in node.elements:
                         if type(element).__name__ == "Equations":
-                            told += [(location, equation) for equation in element.equations]
-            for place, equation in told:
+                            located_equations += [(location, equation) for equation in element.equations]
+            for place, equation in located_equations:
                 if equation.derivative:
                     raise construct(equation, "continuous variables", "use them only in simulation")
                 known.setdefault(plain(equation.name), []).append((place, equation.value))
@@ -308,53 +313,53 @@ class Values:
 
     # Types
 
-    def declared_type(self, read: Any, scope: Scope) -> Type | str:
+    def declared_type(self, node: Any, scope: Scope) -> Type | str:
         """Return the type of a declaration; `int` if it has no range."""
-        match type(read).__name__:
+        match type(node).__name__:
             case "Boolean":
                 return BOOLEAN
             case "Integer":
-                return "int" if read.low is None else self._range(read, scope)
+                return "int" if node.low is None else self._range(node, scope)
             case "ForeignType":
-                raise construct(read, f"the type `{read.word}`", "synthesis takes `bool`, ranges of `int` and `enum`")
-        found = self.names.find(read.type, scope)
-        if isinstance(found, Declared) and found.kind == "Enumeration":
-            return self.enumeration(found)
-        if not isinstance(found, Declared) or found.kind != "Types":
-            raise CifFaultError(read, "type", f"`{read.type.text}` is not a type")
-        kind: Type | str = self.known(found)
+                raise construct(node, f"the type `{node.word}`", "synthesis takes `bool`, ranges of `int` and `enum`")
+        declared = self.names.find(node.type, scope)
+        if isinstance(declared, Declaration) and declared.kind == "Enumeration":
+            return self.enumeration(declared)
+        if not isinstance(declared, Declaration) or declared.kind != "Types":
+            raise CifFaultError(node, "type", f"`{node.type.text}` is not a type")
+        kind: Type | str = self.known(declared)
         return kind
 
-    def _range(self, read: Any, scope: Scope) -> range:
-        (low, lowest), (high, highest) = (self.constant(bound, scope) for bound in (read.low, read.high))
+    def _range(self, node: Any, scope: Scope) -> range:
+        (low, lowest), (high, highest) = (self.constant(bound, scope) for bound in (node.low, node.high))
         if not isinstance(lowest, range) or not isinstance(highest, range):
-            raise CifFaultError(read, "type", "the bounds of an int are whole numbers")
+            raise CifFaultError(node, "type", "the bounds of an int are whole numbers")
         if low > high:
-            raise CifFaultError(read, "integer-range", f"the range int[{low}..{high}] is empty")
+            raise CifFaultError(node, "integer-range", f"the range int[{low}..{high}] is empty")
         return range(low, high + 1)
 
-    def enumeration(self, declared: Declared) -> ex.Enumeration:
+    def enumeration(self, declared: Declaration) -> ex.Enumeration:
         """Return the enumeration of a declaration."""
-        if declared.made is None:
-            declared.made = ex.Enumeration(name=declared.name, origin=declared.scope.path or None)
-            declared.made.literals.extend(
-                ex.EnumerationLiteral(name=plain(literal.name)) for literal in declared.read.literals
+        if declared.element is None:
+            declared.element = ex.Enumeration(name=declared.name, origin=declared.scope.path or None)
+            declared.element.literals.extend(
+                ex.EnumerationLiteral(name=plain(literal.name)) for literal in declared.node.literals
             )
-        found: ex.Enumeration = declared.made
-        return found
+        enumeration: ex.Enumeration = declared.element
+        return enumeration
 
 
-def _too_large(read: Any, what: str, most: int) -> CifFaultError:
+def _too_large(node: Any, what: str, most: int) -> CifFaultError:
     message = f"{what} has more than {most} operators and operands"
-    return CifFaultError(read, "cif-construct", message, "move parts of it to automata with variables")
+    return CifFaultError(node, "cif-construct", message, "move parts of it to automata with variables")
 
 
-def computed_from_itself(found: Definition) -> CifFaultError:
+def computed_from_itself(named: Definition) -> CifFaultError:
     """Return the fault of a definition or an argument that is computed from itself."""
-    if isinstance(found, Declared):
-        verb = "defined by" if found.kind == "Types" else "computed from"
-        return CifFaultError(found.read, "cyclic-definition", f"`{found.name}` is {verb} itself")
-    return CifFaultError(found.read, "cyclic-definition", "the argument of the parameter is computed from itself")
+    if isinstance(named, Declaration):
+        verb = "defined by" if named.kind == "Types" else "computed from"
+        return CifFaultError(named.node, "cyclic-definition", f"`{named.name}` is {verb} itself")
+    return CifFaultError(named.node, "cyclic-definition", "the argument of the parameter is computed from itself")
 
 
 class _ChangingError(Exception):

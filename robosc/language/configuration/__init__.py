@@ -286,14 +286,14 @@ def find(folder: Path) -> Path | None:
     level = [folder]
     for _ in range(SEARCH_DEPTH + 1):
         # `read` reports a pipe or device.
-        found = [folder / FILE_NAME for folder in level if _is_there(folder / FILE_NAME)]
-        if len(found) > 1:
-            names = " and ".join(f"{file.relative_to(folder)}" for file in found[:2])
-            names += f" and {len(found) - 2} more" if len(found) > 2 else ""
+        candidates = [folder / FILE_NAME for folder in level if _is_there(folder / FILE_NAME)]
+        if len(candidates) > 1:
+            names = " and ".join(f"{file.relative_to(folder)}" for file in candidates[:2])
+            names += f" and {len(candidates) - 2} more" if len(candidates) > 2 else ""
             message = f"the model's folder has several configurations: {names}"
-            raise ModelError([_error(str(found[1]), message, hint="choose one with --config")])
-        if found:
-            return found[0]
+            raise ModelError([_error(str(candidates[1]), message, hint="choose one with --config")])
+        if candidates:
+            return candidates[0]
         level = [below for folder in level for below in _folders(folder)]
     return None
 
@@ -392,7 +392,7 @@ def _keys_at(key: Key) -> list[str]:
 def _settings_in(annotation: Any) -> type[BaseModel] | None:
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return annotation
-    return next((found for found in map(_settings_in, getattr(annotation, "__args__", ())) if found), None)
+    return next((settings for settings in map(_settings_in, getattr(annotation, "__args__", ())) if settings), None)
 
 
 def _span(text: str, key: Key) -> Span:

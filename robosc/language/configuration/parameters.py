@@ -83,7 +83,7 @@ def controller_parameters(graph: rosgraph.RosGraph, configuration: Configuration
 
 def model_parameters(graph: rosgraph.RosGraph) -> dict[rosgraph.Parameter, Parameter]:
     """Return the parameters that the model declares. Those of a component have its name as prefix."""
-    found = {}
+    parameters = {}
     for declared in graph.parameters:
         name = declared.name if declared.component is None else f"{declared.component}.{declared.name}"
         low, high = declared.lowest, declared.highest
@@ -92,8 +92,8 @@ def model_parameters(graph: rosgraph.RosGraph) -> dict[rosgraph.Parameter, Param
         bounds = None if low is None or high is None else (low, high)
         default = constant_value(declared.initial)
         assert isinstance(default, (bool, int, float, str))
-        found[declared] = Parameter(name, default, declared.description or "", bounds, changes=True)
-    return found
+        parameters[declared] = Parameter(name, default, declared.description or "", bounds, changes=True)
+    return parameters
 
 
 def watchdog(words: Mapping[Topic, str], topic: rosgraph.Subscription) -> str:
@@ -128,14 +128,14 @@ def layer_parameters(graph: rosgraph.RosGraph, configuration: Configuration, log
 
 def _timeouts(graph: rosgraph.RosGraph, configuration: Configuration) -> list[Parameter]:
     services, actions = configuration.services.timeout_ms, configuration.actions.timeout_ms
-    found = []
+    parameters = []
     if graph.serviceClients:
         meaning = "A call fails after this time without an answer."
-        found.append(Parameter("service_timeout_ms", services, meaning, (1, _DAY)))
+        parameters.append(Parameter("service_timeout_ms", services, meaning, (1, _DAY)))
     if graph.actionClients:
         meaning = "A goal fails after this time without acceptance."
-        found.append(Parameter("action_timeout_ms", actions, meaning, (1, _DAY)))
-    return found
+        parameters.append(Parameter("action_timeout_ms", actions, meaning, (1, _DAY)))
+    return parameters
 
 
 def _diagnostics(configuration: Configuration) -> list[Parameter]:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.language.building import Builder
+from robosc.language.builder import Builder
 from robosc.language.formatting.documents import render
 from robosc.language.formatting.layout import layout
 from robosc.language.grammar import Failure, parse
-from robosc.language.recovery import recovered
+from robosc.language.recovery import recover
 from robosc.language.tokens import Tokens, too_complex
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ def format_text(text: Text) -> tuple[str | None, list[Diagnostic]]:
     """
     tree = None if too_complex(text.tokens) else parse(text.content, "Base")
     if tree is None or isinstance(tree, Failure):
-        return None, recovered(text).findings
+        return None, recover(text).findings
     builder = Builder(text)
     builder.build(tree)
     if builder.findings:

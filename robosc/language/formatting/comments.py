@@ -24,13 +24,13 @@ class Space:
     comments: list[Comment] = field(default_factory=list)
     breaks: list[int] = field(default_factory=lambda: [0])
 
-    def parted(self) -> tuple[Space, Space]:
+    def split(self) -> tuple[Space, Space]:
         """Split at the first comment beside a line break, which belongs to the second part."""
         count = len(self.comments)
         at = next((index for index in range(count) if self.breaks[index] or self.breaks[index + 1]), count)
         return Space(self.comments[:at], [0] * (at + 1)), Space(self.comments[at:], self.breaks[at:])
 
-    def joined(self, other: Space) -> Space:
+    def join(self, other: Space) -> Space:
         """Return the comments of both, in order."""
         if not self.comments:
             return other
@@ -49,28 +49,28 @@ def spaces(text: str, words: Iterable[Node]) -> dict[int, Space]:
     The layout moves a comma or an opening brace to the end of the previous line. Comments before it that end a line or
     fill their own line therefore count as standing behind it.
     """
-    found: dict[int, Space] = {}
+    by_position: dict[int, Space] = {}
     end, moved = 0, Space()
     for word in words:
-        space = moved.joined(_space(text, end, word.position))
+        space = moved.join(_space(text, end, word.position))
         moved = Space()
         if word.value in {",", "{"}:
-            space, moved = space.parted()
-        found[word.position] = space
+            space, moved = space.split()
+        by_position[word.position] = space
         end = word.position_end
-    found[len(text)] = moved.joined(_space(text, end, len(text)))
-    return found
+    by_position[len(text)] = moved.join(_space(text, end, len(text)))
+    return by_position
 
 
 def _space(text: str, start: int, end: int) -> Space:
     """Return the space between two offsets. The start and the end of the text count as line breaks."""
     comments: list[Comment] = []
     breaks: list[int] = []
-    for found in _COMMENT.finditer(text, start, end):
-        breaks.append(text.count("\n", start, found.start()) or int(start == 0))
-        line = text.rfind("\n", 0, found.start()) + 1
-        column = len(text[line : found.start()].expandtabs(INDENTATION))
-        comments.append(Comment(found.group(), column))
-        start = found.end()
+    for match in _COMMENT.finditer(text, start, end):
+        breaks.append(text.count("\n", start, match.start()) or int(start == 0))
+        line = text.rfind("\n", 0, match.start()) + 1
+        column = len(text[line : match.start()].expandtabs(INDENTATION))
+        comments.append(Comment(match.group(), column))
+        start = match.end()
     breaks.append(text.count("\n", start, end) or int(end == len(text)))
     return Space(comments, breaks)

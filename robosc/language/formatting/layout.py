@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from robosc.language.building import element_class
+from robosc.language.builder import element_class
 from robosc.language.formatting.comments import Space, spaces
 from robosc.language.formatting.documents import Document, Gap, Group, Indent
 from robosc.language.grammar import attribute
@@ -59,10 +59,10 @@ _LOOSE = {"NeedsRequirement", "ProvideStatement"}
 
 def layout(text: str, tree: Node) -> Document:
     """Return the document of a text and its parse tree by the rule `Base`."""
-    return _Layout(spaces(text, _words(tree))).file(tree, len(text))
+    return _DocumentLayout(spaces(text, _words(tree))).file(tree, len(text))
 
 
-class _Layout:
+class _DocumentLayout:
     """Creates documents of nodes. The space before a node belongs to its parent."""
 
     def __init__(self, spaces: dict[int, Space]) -> None:
@@ -117,11 +117,11 @@ class _Layout:
                 clauses.append([])
             clauses[-1].append(right)
         first = self._row(clauses[0])
-        found: list[Document] = [Indent(first) if parts[0].rule_name == "Expression" else first]
+        documents: list[Document] = [Indent(first) if parts[0].rule_name == "Expression" else first]
         for clause in clauses[1:]:
             content = Group(self._row(clause, before={"links"}, after={"do", ","}))
-            found.append(Indent((self._gap(clause[0], Gap.BREAK), content)))
-        return tuple(map(Group, found)) if rule in _LOOSE else Group(tuple(found))
+            documents.append(Indent((self._gap(clause[0], Gap.BREAK), content)))
+        return tuple(map(Group, documents)) if rule in _LOOSE else Group(tuple(documents))
 
     def _chain(self, first: Node, others: Sequence[tuple[Node, Node, Node]]) -> Document:
         """Lay out operands so that the loosest operators break first.
@@ -201,11 +201,11 @@ class _Layout:
     def _comments(self, space: Space, gap: Gap, gaps: Sequence[Gap]) -> Document:
         if not space.comments:
             return gap
-        found: list[Document] = list(space.comments[: space.trailing])
-        found.append(gap)
+        documents: list[Document] = list(space.comments[: space.trailing])
+        documents.append(gap)
         for before, comment in zip(gaps[space.trailing :], space.comments[space.trailing :], strict=False):
-            found += before, comment
-        return *found, gaps[-1]
+            documents += before, comment
+        return *documents, gaps[-1]
 
     def _closing(self, node: Node, gap: Gap, *, first: bool = False) -> Document:
         """Return a closing bracket and the gap before it. Comments in the gap belong inside the brackets."""

@@ -23,7 +23,7 @@ _CLASSES: list[tuple[_TokenType, str]] = [
 ]
 
 
-def coloured(path: str, text: str) -> list[list[tuple[str, str]]]:
+def color_lines(path: str, text: str) -> list[list[tuple[str, str]]]:
     """Return the lines of a text as pieces: the class (`k`, `t`, `n`, `c` or empty), and the text.
 
     Only `.rscd` files are colored.

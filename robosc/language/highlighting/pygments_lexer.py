@@ -34,11 +34,11 @@ _TOKENS = {
 
 def _rules() -> list[tuple[str, Any]]:
     begin, end = BLOCK_COMMENT
-    found: list[tuple[str, Any]] = [(rf"{begin}[\s\S]*?(?:{end}|\Z)", Comment.Multiline)]
+    patterns: list[tuple[str, Any]] = [(rf"{begin}[\s\S]*?(?:{end}|\Z)", Comment.Multiline)]
     for rule in rules():
         tokens = [_TOKENS[kind] for kind in rule.kinds]
-        found.append((rule.pattern, tokens[0] if len(tokens) == 1 else bygroups(*tokens)))
-    return found
+        patterns.append((rule.pattern, tokens[0] if len(tokens) == 1 else bygroups(*tokens)))
+    return patterns
 
 
 class RoboscLexer(RegexLexer):

@@ -87,57 +87,59 @@ BLOCK_COMMENT = (r"/\*", r"\*/")
 
 
 @dataclass(frozen=True)
-class Rule:
+class HighlightRule:
     """A regular expression, and the kind of its match, or of each of its groups, which cover the match."""
 
     pattern: str
     kinds: tuple[Kind, ...]
 
 
-def rules() -> Iterator[Rule]:
+def rules() -> Iterator[HighlightRule]:
     """Yield all rules; if several match at a place, the first one counts. Block comments take precedence."""
     blank, number = r"(\s+)", r"[0-9]+(?:\.[0-9]+)?"
     unit, name = _any(UNITS), f"({_NAME})"
-    yield Rule(r"//[^\n]*", (Kind.COMMENT,))
-    yield Rule(r'"(?:[^"\\\n]|\\.)*"?', (Kind.STRING,))
-    yield Rule(r"'(?:[^'\\\n]|\\.)*'?", (Kind.STRING,))
+    yield HighlightRule(r"//[^\n]*", (Kind.COMMENT,))
+    yield HighlightRule(r'"(?:[^"\\\n]|\\.)*"?', (Kind.STRING,))
+    yield HighlightRule(r"'(?:[^'\\\n]|\\.)*'?", (Kind.STRING,))
     # Times
-    yield Rule(rf"(?<![0-9])({number}){blank}{unit}\b", (Kind.FLOAT, Kind.BLANK, Kind.UNIT))
-    yield Rule(rf"(\)){blank}{unit}\b", (Kind.PUNCTUATION, Kind.BLANK, Kind.UNIT))
+    yield HighlightRule(rf"(?<![0-9])({number}){blank}{unit}\b", (Kind.FLOAT, Kind.BLANK, Kind.UNIT))
+    yield HighlightRule(rf"(\)){blank}{unit}\b", (Kind.PUNCTUATION, Kind.BLANK, Kind.UNIT))
     after = (Kind.CONTROL, Kind.BLANK, Kind.NAME, Kind.BLANK, Kind.UNIT)
-    yield Rule(rf"(?<![\w^])(after){blank}({_NAME}(?:\.{_NAME})?){blank}{unit}\b", after)
+    yield HighlightRule(rf"(?<![\w^])(after){blank}({_NAME}(?:\.{_NAME})?){blank}{unit}\b", after)
     # A number before the dots of a range is not a double.
-    yield Rule(r"(?<![0-9])[0-9]+\.[0-9]+\b", (Kind.FLOAT,))
-    yield Rule(r"[0-9]+\b", (Kind.INTEGER,))
+    yield HighlightRule(r"(?<![0-9])[0-9]+\.[0-9]+\b", (Kind.FLOAT,))
+    yield HighlightRule(r"[0-9]+\b", (Kind.INTEGER,))
     # In positions for names only, keywords are names, too.
-    yield Rule(r"\.\.", (Kind.OPERATOR,))
-    yield Rule(rf"(\.)(\s*){name}", (Kind.PUNCTUATION, Kind.BLANK, Kind.NAME))
-    yield Rule(rf"\^{_NAME[3:]}", (Kind.NAME,))
+    yield HighlightRule(r"\.\.", (Kind.OPERATOR,))
+    yield HighlightRule(rf"(\.)(\s*){name}", (Kind.PUNCTUATION, Kind.BLANK, Kind.NAME))
+    yield HighlightRule(rf"\^{_NAME[3:]}", (Kind.NAME,))
     declaring = ("robot", "library", "component", "state", "message", "service", "action", "variable", "interface")
     declared = (Kind.DECLARATION, Kind.BLANK, Kind.DECLARED)
-    yield Rule(rf"{_any((*declaring, 'enum', 'object'))}{blank}{name}", declared)
-    yield Rule(rf"{_any(('constant', 'parameter', 'condition', 'function'))}{blank}{name}(?=\s*[:=(])", declared)
-    yield Rule(rf"{_any(('requirement', 'property'))}{blank}{name}(?=\s*[:\"'])", declared)
-    yield Rule(rf"(?<![\w^])(goto){blank}{name}", (Kind.CONTROL, Kind.BLANK, Kind.NAME))
-    yield Rule(rf"(->)(\s*){name}", (Kind.OPERATOR, Kind.BLANK, Kind.NAME))
-    yield Rule(rf"(?<![\w^])(in){blank}(value)\b", (Kind.CONTROL, Kind.BLANK, Kind.DATA))
-    yield Rule(r"(send)(\s*:\s*)(change)\b", (Kind.CONTROL, Kind.PUNCTUATION, Kind.CONTROL))
-    yield Rule(rf"(?<![\w^])(at){blank}(most)\b", (Kind.CONTROL, Kind.BLANK, Kind.CONTROL))
-    yield Rule(r"(?<![\w^])(canceled)(?=\s+(?:from|to)\b)", (Kind.CONTROL,))
+    yield HighlightRule(rf"{_any((*declaring, 'enum', 'object'))}{blank}{name}", declared)
+    yield HighlightRule(
+        rf"{_any(('constant', 'parameter', 'condition', 'function'))}{blank}{name}(?=\s*[:=(])", declared
+    )
+    yield HighlightRule(rf"{_any(('requirement', 'property'))}{blank}{name}(?=\s*[:\"'])", declared)
+    yield HighlightRule(rf"(?<![\w^])(goto){blank}{name}", (Kind.CONTROL, Kind.BLANK, Kind.NAME))
+    yield HighlightRule(rf"(->)(\s*){name}", (Kind.OPERATOR, Kind.BLANK, Kind.NAME))
+    yield HighlightRule(rf"(?<![\w^])(in){blank}(value)\b", (Kind.CONTROL, Kind.BLANK, Kind.DATA))
+    yield HighlightRule(r"(send)(\s*:\s*)(change)\b", (Kind.CONTROL, Kind.PUNCTUATION, Kind.CONTROL))
+    yield HighlightRule(rf"(?<![\w^])(at){blank}(most)\b", (Kind.CONTROL, Kind.BLANK, Kind.CONTROL))
+    yield HighlightRule(r"(?<![\w^])(canceled)(?=\s+(?:from|to)\b)", (Kind.CONTROL,))
     reserved = [word for words in RESERVED.values() for word in words]
-    yield Rule(rf"{_any([word for word in reserved if word not in _KEYS])}(?=\s*:(?!=))", (Kind.NAME,))
+    yield HighlightRule(rf"{_any([word for word in reserved if word not in _KEYS])}(?=\s*:(?!=))", (Kind.NAME,))
     # Words that depend on the text behind them
-    yield Rule(rf"{_any(ROBOSC_QUANTIFIERS)}\b(?=\s+{_NAME}(?:\s*:|\s+in\b))", (Kind.WORD_OPERATOR,))
-    yield Rule(rf"{_any(ROBOSC_FUNCTIONS)}\b(?=\s*\()", (Kind.FUNCTION,))
+    yield HighlightRule(rf"{_any(ROBOSC_QUANTIFIERS)}\b(?=\s+{_NAME}(?:\s*:|\s+in\b))", (Kind.WORD_OPERATOR,))
+    yield HighlightRule(rf"{_any(ROBOSC_FUNCTIONS)}\b(?=\s*\()", (Kind.FUNCTION,))
     no_operand = rf"(?!{_any(_BEHIND_NAMES)}\b)"
     for kind, words in IN_CONTEXT.items():
-        yield Rule(rf"{_any(words)}\b(?=\s*$|\s+{no_operand}[\w^({{!\-\"'\[]|\()", (kind,))
+        yield HighlightRule(rf"{_any(words)}\b(?=\s*$|\s+{no_operand}[\w^({{!\-\"'\[]|\()", (kind,))
     for kind, words in RESERVED.items():
-        yield Rule(rf"{_any(words)}\b", (kind,))
-    yield Rule(_NAME, (Kind.NAME,))
-    yield Rule(r":=|->|=>|!=|<=|>=|[-+*/=<>!]", (Kind.OPERATOR,))
-    yield Rule(r"[{}()\[\],:.]", (Kind.PUNCTUATION,))
-    yield Rule(r"\s+", (Kind.BLANK,))
+        yield HighlightRule(rf"{_any(words)}\b", (kind,))
+    yield HighlightRule(_NAME, (Kind.NAME,))
+    yield HighlightRule(r":=|->|=>|!=|<=|>=|[-+*/=<>!]", (Kind.OPERATOR,))
+    yield HighlightRule(r"[{}()\[\],:.]", (Kind.PUNCTUATION,))
+    yield HighlightRule(r"\s+", (Kind.BLANK,))
 
 
 def _any(words: list[str] | tuple[str, ...]) -> str:

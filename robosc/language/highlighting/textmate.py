@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from robosc.language.highlighting.rules import BLOCK_COMMENT, Kind, Rule, rules
+from robosc.language.highlighting.rules import BLOCK_COMMENT, HighlightRule, Kind, rules
 
 
 def grammar() -> str:
@@ -21,7 +21,7 @@ def grammar() -> str:
     return json.dumps(document, indent=2) + "\n"
 
 
-def _pattern(rule: Rule) -> dict[str, Any]:
+def _pattern(rule: HighlightRule) -> dict[str, Any]:
     if len(rule.kinds) == 1:
         return {"match": rule.pattern, "name": f"{rule.kinds[0]}.robosc"}
     captures = {

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robosc.base.diagnostics import Diagnostic, ModelError, Severity
-from robosc.m2m.remembering import once
+from robosc.m2m.memo import once
 from robosc.m2m.sct_to_cif.linear import LARGEST, Unsupported, bounds, shift
 from robosc.m2m.sct_to_cif.lower_arithmetic import Lowering
 from robosc.model import expression as ex
@@ -18,13 +18,13 @@ from robosc.model.reflection import tree
 from robosc.model.semantics.domains import domain
 from robosc.model.semantics.edges import edges_of
 from robosc.model.semantics.printing import conjunction
-from robosc.model.semantics.walks import copied
+from robosc.model.semantics.walks import copy_tree
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
 
 
-class Lowered(NamedTuple):
+class LoweredModel(NamedTuple):
     """An sct model in CIF's terms, and the original of each element.
 
     Numbers are never negative, and never outside the range of the variable that they are assigned to. A `-` occurs only
@@ -36,22 +36,22 @@ class Lowered(NamedTuple):
     originals: Mapping[Any, Any]
 
 
-def transform(model: sct.SupervisoryControlModel) -> Lowered:
+def transform(model: sct.SupervisoryControlModel) -> LoweredModel:
     """Lower a model, with its supervisor if it has one. The original model does not change.
 
     Precondition: the model does not come from CIF. Raises ModelError with findings of the rule `cif` if numbers exceed
     32 bits, or if expressions would need too many cases.
     """
-    return once((transform, model), lambda: _Transformation(model).run())
+    return once((transform, model), lambda: _SctToCif(model).run())
 
 
-class _Transformation:
+class _SctToCif:
     def __init__(self, model: sct.SupervisoryControlModel) -> None:
         self._model = model
         #: Lowered element of each element; for a location of a numbered plant, its variable and number.
-        self._made: dict[Any, Any] = {}
+        self._copies: dict[Any, Any] = {}
         self._numbered: dict[sct.Location, tuple[sct.DiscreteVariable, int]] = {}
-        self._lowering = Lowering(self._made, self._numbered)
+        self._lowering = Lowering(self._copies, self._numbered)
         #: Reason why CIF cannot express an element, by the element to report it at.
         self._faults: dict[Any, str] = {}
         self._impossible = _impossible(model)
@@ -59,18 +59,18 @@ class _Transformation:
             reference.location for _, reference in tree(model) if isinstance(reference, sct.LocationReference)
         }
 
-    def run(self) -> Lowered:
-        self._made[self._model] = model = sct.SupervisoryControlModel(name=self._model.name)
+    def run(self) -> LoweredModel:
+        self._copies[self._model] = model = sct.SupervisoryControlModel(name=self._model.name)
         for enumeration in self._model.enumerations:
-            self._made[enumeration] = made = copied(enumeration)
-            self._made |= zip(enumeration.literals, made.literals, strict=True)
-            model.enumerations.append(made)
+            self._copies[enumeration] = clone = copy_tree(enumeration)
+            self._copies |= zip(enumeration.literals, clone.literals, strict=True)
+            model.enumerations.append(clone)
         model.plants.extend(map(self._plant, self._model.plants))
         self._refuse()  # Values computed from numbers that are too large would be reported again.
         for plant in self._model.plants:
-            self._made[plant].edges.extend(self._edges(plant.edges))
+            self._copies[plant].edges.extend(self._edges(plant.edges))
             for location in plant.locations:
-                self._made[location].edges.extend(self._edges(location.edges))
+                self._copies[location].edges.extend(self._edges(location.edges))
         model.requirements.extend(map(self._requirement, self._model.requirements))
         for invariant in self._model.invariants:
             condition = self._condition(invariant.condition)
@@ -78,7 +78,7 @@ class _Transformation:
         if self._model.supervisor is not None:
             model.supervisor = self._supervisor(self._model.supervisor)
         self._refuse()
-        return Lowered(model, {made: original for original, made in self._made.items()})
+        return LoweredModel(model, {lowered: original for original, lowered in self._copies.items()})
 
     def _refuse(self) -> None:
         if self._faults:
@@ -97,44 +97,44 @@ class _Transformation:
 
     def _plant(self, plant: sct.Plant) -> sct.Plant:
         """Lower a plant without its edges."""
-        self._made[plant] = made = sct.Plant(name=plant.name, kind=plant.kind, origin=plant.origin)
-        made.inputs.extend(map(self._cell, plant.inputs))
-        made.variables.extend(map(self._cell, plant.variables))
+        self._copies[plant] = lowered = sct.Plant(name=plant.name, kind=plant.kind, origin=plant.origin)
+        lowered.inputs.extend(map(self._cell, plant.inputs))
+        lowered.variables.extend(map(self._cell, plant.variables))
         for event in plant.events:
             if event not in self._impossible:
-                self._made[event] = sct.Event(
+                self._copies[event] = sct.Event(
                     name=event.name,
                     controllable=event.controllable,
                     kind=event.kind,
-                    inputs=[self._made[carried] for carried in event.inputs],
+                    inputs=[self._copies[carried] for carried in event.inputs],
                 )
-                made.events.append(self._made[event])
+                lowered.events.append(self._copies[event])
         if _is_numbered(plant):
-            self._number_locations(plant, made)
-            return made
+            self._number_locations(plant, lowered)
+            return lowered
         nameless = plant.kind == sct.PlantKind.message and len(plant.locations) == 1
         for location in plant.locations:
             name = "" if nameless and location not in self._referred else location.name
-            self._made[location] = sct.Location(name=name, initial=location.initial, marked=location.marked)
-            made.locations.append(self._made[location])
-        return made
+            self._copies[location] = sct.Location(name=name, initial=location.initial, marked=location.marked)
+            lowered.locations.append(self._copies[location])
+        return lowered
 
     def _cell(self, cell: Any) -> Any:
         """Lower an input or variable. A negative range is shifted to start at 0."""
-        self._made[cell] = made = type(cell)(name=cell.name, type=copied(cell.type, self._made))
-        if isinstance(made.type, ex.EnumerationType):
-            made.type.first = made.type.last = None
-        if isinstance(made.type, ex.IntegerType):
+        self._copies[cell] = lowered = type(cell)(name=cell.name, type=copy_tree(cell.type, self._copies))
+        if isinstance(lowered.type, ex.EnumerationType):
+            lowered.type.first = lowered.type.last = None
+        if isinstance(lowered.type, ex.IntegerType):
             low, high = (bound + shift(cell) for bound in bounds(cell))
-            made.type.minimum, made.type.maximum = low, high
+            lowered.type.minimum, lowered.type.maximum = low, high
             if high > LARGEST:
                 self._faults[cell] = "its range does not fit 32 bits"
         if isinstance(cell, sct.DiscreteVariable) and cell not in self._faults:
             assert cell.initial is not None
-            made.initial = self._lowering.assigned(cell, cell.initial)
-        return made
+            lowered.initial = self._lowering.lower_assignment(cell, cell.initial)
+        return lowered
 
-    def _number_locations(self, plant: sct.Plant, made: sct.Plant) -> None:
+    def _number_locations(self, plant: sct.Plant, lowered: sct.Plant) -> None:
         """Replace the locations of a plant by one location without a name and a variable that holds a number."""
         start = next(number for number, location in enumerate(plant.locations) if location.initial)
         variable = sct.DiscreteVariable(
@@ -143,10 +143,10 @@ class _Transformation:
             initial=ex.IntegerLiteral(value=start),
         )
         only = sct.Location(name="", initial=True, marked=plant.locations[0].marked)
-        made.variables.append(variable)
-        made.locations.append(only)
+        lowered.variables.append(variable)
+        lowered.locations.append(only)
         for number, location in enumerate(plant.locations):
-            self._made[location] = only
+            self._copies[location] = only
             self._numbered[location] = variable, number
 
     def _edges(self, edges: Iterable[sct.Edge]) -> list[sct.Edge]:
@@ -154,14 +154,14 @@ class _Transformation:
 
     def _edge(self, edge: sct.Edge) -> sct.Edge:
         guard = conjunction(filter(None, [*self._possible(edge), self._condition(edge.guard)]))
-        made = sct.Edge(event=self._made[edge.event], guard=guard, target=self._made[edge.target])
+        lowered = sct.Edge(event=self._copies[edge.event], guard=guard, target=self._copies[edge.target])
         for update in edge.updates:
-            value = self._lowered(None, self._lowering.assigned, update.variable, update.value)
-            made.updates.append(sct.Update(variable=self._made[update.variable], value=value))
+            value = self._lowered(None, self._lowering.lower_assignment, update.variable, update.value)
+            lowered.updates.append(sct.Update(variable=self._copies[update.variable], value=value))
         if edge.target in self._numbered:
             variable, number = self._numbered[edge.target]
-            made.updates.append(sct.Update(variable=variable, value=ex.IntegerLiteral(value=number)))
-        return made
+            lowered.updates.append(sct.Update(variable=variable, value=ex.IntegerLiteral(value=number)))
+        return lowered
 
     def _possible(self, edge: sct.Edge) -> Iterator[ex.Expression]:
         """Return conditions on the inputs of an event that exclude impossible literals.
@@ -176,22 +176,22 @@ class _Transformation:
                 low, high = domain(carried.type)
                 for place, literal in enumerate(carried.type.enumeration.literals):
                     if not low <= place <= high:
-                        read = sct.InputReference(input=self._made[carried])
-                        other = ex.EnumerationLiteralReference(literal=self._made[literal])
-                        yield ex.Inequation(left=read, right=other)
+                        reference = sct.InputReference(input=self._copies[carried])
+                        other = ex.EnumerationLiteralReference(literal=self._copies[literal])
+                        yield ex.Inequation(left=reference, right=other)
 
     def _requirement(self, requirement: sct.Requirement) -> sct.Requirement:
         return sct.Requirement(
             name=requirement.name,
             text=requirement.text,
-            event=self._made[requirement.event],
+            event=self._copies[requirement.event],
             kind=requirement.kind,
             condition=self._condition(requirement.condition),
         )
 
     def _supervisor(self, supervisor: sct.Supervisor) -> sct.Supervisor:
         """Lower the conditions of the supervisor and its state counts."""
-        made = sct.Supervisor(
+        lowered = sct.Supervisor(
             uncontrolledStates=supervisor.uncontrolledStates, controlledStates=supervisor.controlledStates
         )
         for guard in supervisor.guards:
@@ -200,17 +200,17 @@ class _Transformation:
                 requirement, synthesis = (
                     self._condition(part, guard.event) for part in (guard.requirement, guard.synthesis)
                 )
-                event = self._made[guard.event]
-                made.guards.append(sct.EventGuard(event=event, requirement=requirement, synthesis=synthesis))
-        return made
+                event = self._copies[guard.event]
+                lowered.guards.append(sct.EventGuard(event=event, requirement=requirement, synthesis=synthesis))
+        return lowered
 
     def _condition(self, expression: ex.Expression | None, culprit: Any = None) -> ex.Expression | None:
         return None if expression is None else self._lowered(culprit, self._lowering.condition, expression)
 
-    def _lowered(self, culprit: Any, lower: Callable[..., ex.Expression], *given: Any) -> ex.Expression | None:
+    def _lowered(self, culprit: Any, lower: Callable[..., ex.Expression], *arguments: Any) -> ex.Expression | None:
         """Call a method of the lowering. If CIF cannot express the result, record a fault and return None."""
         try:
-            return lower(*given)
+            return lower(*arguments)
         except Unsupported as fault:
             self._faults.setdefault(fault.expression if culprit is None else culprit, fault.reason)
             return None
@@ -237,11 +237,11 @@ def _impossible(model: sct.SupervisoryControlModel) -> set[sct.Event]:
     All their edges have the guard `false`. An example is `c_none` if a provide statement has no condition. CIF warns of
     events that can never happen.
     """
-    found = {event for plant in model.plants for event in plant.events}
-    found -= {requirement.event for requirement in model.requirements}
+    events = {event for plant in model.plants for event in plant.events}
+    events -= {requirement.event for requirement in model.requirements}
     for plant in model.plants:
         for edge in edges_of(plant):
             never = isinstance(edge.guard, ex.BooleanLiteral) and not edge.guard.value
             if not never or edge.event.eContainer() is not plant:
-                found.discard(edge.event)
-    return found
+                events.discard(edge.event)
+    return events

@@ -13,7 +13,7 @@ from robosc.m2m.sct_to_cif.linear import LARGEST, Linear, Unsupported, bounds, s
 from robosc.model import expression as ex
 from robosc.model import sct
 from robosc.model.semantics.operators import BY_CLASS, COMPARISONS
-from robosc.model.semantics.walks import copied, operands, walk, with_operands
+from robosc.model.semantics.walks import copy_tree, operands, walk, with_operands
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterable, Mapping
@@ -41,20 +41,20 @@ _Part = tuple[ex.Expression, bool]
 class Lowering:
     """Lowers expressions. Raises Unsupported for an expression that CIF cannot express.
 
-    `made` maps each referenced element to its lowered element. `numbered` maps each location that a variable replaces
+    `copies` maps each referenced element to its lowered element. `numbered` maps each location that a variable replaces
     to this variable and a number.
     """
 
     def __init__(
-        self, made: Mapping[Any, Any], numbered: Mapping[sct.Location, tuple[sct.DiscreteVariable, int]]
+        self, copies: Mapping[Any, Any], numbered: Mapping[sct.Location, tuple[sct.DiscreteVariable, int]]
     ) -> None:
-        self._made = made
+        self._copies = copies
         self._numbered = numbered
 
     def condition(self, expression: ex.Expression) -> ex.Expression:
         """Lower a boolean or enumeration-valued expression to a new tree. Raises Unsupported."""
-        made: ex.Expression = walk(self._lowered, (expression, False))
-        return made
+        lowered: ex.Expression = walk(self._lowered, (expression, False))
+        return lowered
 
     def _lowered(self, part: _Part) -> Generator[_Part, Any, Any]:
         """Lower an expression. The result for a number is its pieces."""
@@ -64,7 +64,7 @@ class Lowering:
     def _condition_lowered(self, expression: ex.Expression) -> Generator[_Part, Any, ex.Expression]:
         if isinstance(expression, COMPARISONS) and _is_number(expression.left):
             if _is_plain(expression.left) and _is_plain(expression.right):
-                return copied(expression, self._made)
+                return copy_tree(expression, self._copies)
             left, right = (yield expression.left, True), (yield expression.right, True)
             pieces = _sum(expression, left, _scaled(right, -1))
             return _compared(type(expression), pieces, Linear(0), expression)
@@ -72,38 +72,41 @@ class Lowering:
             variable, number = self._numbered[expression.location]
             return ex.Equation(left=sct.VariableReference(variable=variable), right=ex.IntegerLiteral(value=number))
         if isinstance(expression, _ATOMS):
-            return copied(expression, self._made)
+            return copy_tree(expression, self._copies)
         if not isinstance(expression, (ex.Conditional, ex.Negation, ex.BinaryExpression)):
             raise Unsupported(expression, f"CIF has no {type(expression).__name__}")
-        made = []
+        operands_lowered = []
         for operand in operands(expression):
-            made.append((yield operand, False))  # noqa: PERF401 - no comprehension yields
+            operands_lowered.append((yield operand, False))  # noqa: PERF401 - no comprehension yields
         if isinstance(expression, ex.Conditional):
-            return ex.Conditional(condition=made[0], then=made[1], otherwise=made[2])
-        return with_operands(expression, made)
+            return ex.Conditional(
+                condition=operands_lowered[0], then=operands_lowered[1], otherwise=operands_lowered[2]
+            )
+        return with_operands(expression, operands_lowered)
 
-    def assigned(self, variable: sct.DiscreteVariable, value: ex.Expression) -> ex.Expression:
+    def lower_assignment(self, variable: sct.DiscreteVariable, value: ex.Expression) -> ex.Expression:
         """Lower the value that is assigned to a variable, limited to its range. Raises Unsupported."""
         if not isinstance(variable.type, ex.IntegerType):
             return self.condition(value)
-        low, high = bounds(self._made[variable])
+        low, high = bounds(self._copies[variable])
         pieces = self._linear(value)
         if _is_plain(value) and len(pieces) == 1 and shift(variable) == 0:
             least, greatest = pieces[0][1].range()
             if low <= least and greatest <= high:
-                return copied(value, self._made)
+                return copy_tree(value, self._copies)
         guards = [guard for guard, _ in pieces]
         parts = [_saturated(piece + Linear(shift(variable)), low, high, value) for _, piece in pieces]
-        minuend = _first(zip(guards, (kept for kept, _ in parts), strict=True))
+        minuend = _first(zip(guards, (positive for positive, _ in parts), strict=True))
         subtrahends = [subtracted for _, subtracted in parts]
         if not any(subtrahend.factors or subtrahend.constant for subtrahend in subtrahends):
             return minuend
         if all(subtrahend == subtrahends[0] for subtrahend in subtrahends):
-            return ex.Subtraction(left=minuend, right=_written(subtrahends[0], value))
+            return ex.Subtraction(left=minuend, right=_expression_of(subtrahends[0], value))
         return ex.Subtraction(
             left=minuend,
             right=_first(
-                (guard, _written(subtrahend, value)) for guard, subtrahend in zip(guards, subtrahends, strict=True)
+                (guard, _expression_of(subtrahend, value))
+                for guard, subtrahend in zip(guards, subtrahends, strict=True)
             ),
         )
 
@@ -116,9 +119,9 @@ class Lowering:
             case ex.IntegerLiteral():
                 return [(None, Linear(expression.value))]
             case sct.VariableReference():
-                return [(None, self._held(expression.variable))]
+                return [(None, self._cell_value(expression.variable))]
             case sct.InputReference():
-                return [(None, self._held(expression.input))]
+                return [(None, self._cell_value(expression.input))]
             case ex.UnaryMinus():
                 return _scaled((yield expression.operand, True), -1)
             case ex.Addition() | ex.Subtraction():
@@ -137,9 +140,9 @@ class Lowering:
                 return _choice(expression, chosen, then, otherwise)
         raise Unsupported(expression, f"CIF has no {type(expression).__name__}")
 
-    def _held(self, cell: Cell) -> Linear:
+    def _cell_value(self, cell: Cell) -> Linear:
         """Return the original value of a variable or input in terms of its lowered cell."""
-        return Linear(-shift(cell), {self._made[cell]: 1})
+        return Linear(-shift(cell), {self._copies[cell]: 1})
 
 
 def _is_number(expression: ex.Expression) -> bool:
@@ -174,7 +177,7 @@ def _is_plain(expression: ex.Expression) -> bool:
 def _against_zero(operator: _Comparison, value: Linear, origin: ex.Expression) -> ex.Expression:
     if not value.factors:
         return ex.BooleanLiteral(value=BY_CLASS[operator].compute(value.constant, 0))
-    left, right = (_written(side, origin) for side in value.sides())
+    left, right = (_expression_of(side, origin) for side in value.sides())
     return operator(left=left, right=right)
 
 
@@ -183,7 +186,7 @@ def _compared(operator: _Comparison, pieces: _Pieces, added: Linear, origin: ex.
     return _first((guard, _against_zero(operator, piece + added, origin)) for guard, piece in pieces)
 
 
-def _written(value: Linear, origin: ex.Expression) -> ex.Expression:
+def _expression_of(value: Linear, origin: ex.Expression) -> ex.Expression:
     if value.range()[1] > LARGEST:
         raise Unsupported(origin, "its numbers do not fit 32 bits")
     return value.tree()
@@ -194,14 +197,14 @@ def _saturated(value: Linear, low: int, high: int, origin: ex.Expression) -> tup
     least, greatest = value.range()
     if least >= high or greatest <= low:
         return ex.IntegerLiteral(value=high if least >= high else low), Linear(0)
-    kept, subtracted = value.sides()
-    result = _written(kept, origin)
+    positive, subtracted = value.sides()
+    result = _expression_of(positive, origin)
     # The first term is limited to the bounds, each increased by the subtracted terms.
     for outside, operator, bound in ((least < low, ex.LessThan, low), (greatest > high, ex.GreaterThan, high)):
         if outside:
             result = ex.Conditional(
                 condition=_against_zero(operator, value + Linear(-bound), origin),
-                then=_written(subtracted + Linear(bound), origin),
+                then=_expression_of(subtracted + Linear(bound), origin),
                 otherwise=result,
             )
     return result, subtracted
@@ -210,11 +213,11 @@ def _saturated(value: Linear, low: int, high: int, origin: ex.Expression) -> tup
 def _first(alternatives: Iterable[tuple[ex.Expression | None, ex.Expression]]) -> ex.Expression:
     """Return the expression of the first alternative whose condition holds."""
     result: ex.Expression | None = None
-    for guard, made in reversed(list(alternatives)):
+    for guard, value in reversed(list(alternatives)):
         if guard is None or result is None:
-            result = made
+            result = value
         else:
-            result = ex.Conditional(condition=copied(guard), then=made, otherwise=result)
+            result = ex.Conditional(condition=copy_tree(guard), then=value, otherwise=result)
     assert result is not None
     return result
 
@@ -234,11 +237,11 @@ def _product(expression: ex.Multiplication, left: _Pieces, right: _Pieces) -> _P
     _limit(expression, _values(split) * len(others))
     low = min(piece.range()[0] for _, piece in split)
     high = max(piece.range()[1] for _, piece in split)
-    made: _Pieces = []
+    pieces: _Pieces = []
     for value in range(low, high + 1):
         guard = _compared(ex.Equation, split, Linear(-value), expression) if value < high else None
-        made += [(_both(guard, other), piece.times(value)) for other, piece in others]
-    return made
+        pieces += [(_both(guard, other), piece.times(value)) for other, piece in others]
+    return pieces
 
 
 def _called(call: ex.FunctionCall, first: _Pieces, last: _Pieces) -> _Pieces:
@@ -261,15 +264,15 @@ def _choice(origin: ex.Expression, condition: ex.Expression, then: _Pieces, othe
 
 def _modulo(expression: ex.FunctionCall, values: _Pieces, divisor: int) -> _Pieces:
     """Split a remainder by the quotient."""
-    made: _Pieces = []
+    pieces: _Pieces = []
     for guard, value in values:
         low, high = (bound // divisor for bound in value.range())
-        _limit(expression, len(made) + high - low + 1)
+        _limit(expression, len(pieces) + high - low + 1)
         for times in range(low, high + 1):
             rest = value + Linear(-times * divisor)
             below = _against_zero(ex.LessThan, rest + Linear(-divisor), expression) if times < high else None
-            made.append((_both(guard, below), rest))
-    return made
+            pieces.append((_both(guard, below), rest))
+    return pieces
 
 
 def _values(pieces: _Pieces) -> int:
@@ -279,7 +282,7 @@ def _values(pieces: _Pieces) -> int:
 
 def _both(left: ex.Expression | None, right: ex.Expression | None) -> ex.Expression | None:
     """Return the conjunction of two conditions in a new tree. Either condition may be missing."""
-    parts = [copied(part) for part in (left, right) if part is not None]
+    parts = [copy_tree(part) for part in (left, right) if part is not None]
     return ex.Conjunction(left=parts[0], right=parts[1]) if len(parts) == 2 else next(iter(parts), None)
 
 

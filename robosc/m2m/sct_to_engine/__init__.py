@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.m2m.remembering import once
+from robosc.m2m.memo import once
 from robosc.m2m.sct_to_engine.build_expressions import as_denial, build_expression, build_value
 from robosc.m2m.sct_to_engine.collect_events import collect_edges, collect_events, collect_groups, collect_sources
 from robosc.m2m.sct_to_engine.combine_guards import combine_guards
@@ -17,7 +17,7 @@ from robosc.m2m.sct_to_engine.lower_timers import lower_timers
 from robosc.m2m.sct_to_engine.merge_effects import EffectTerms, merge_effects
 from robosc.m2m.sct_to_engine.name_reasons import name_reasons
 from robosc.m2m.sct_to_engine.place_state import place_inputs, place_state
-from robosc.m2m.sct_to_engine.share_conditions import Shared, share_conditions
+from robosc.m2m.sct_to_engine.share_conditions import SharedTerms, share_conditions
 from robosc.m2m.sct_to_engine.terms import Term, Terms
 from robosc.model import engine, sct
 from robosc.model.semantics.roles import Roles, event_name, plant_of
@@ -59,7 +59,7 @@ def _transform(model: sct.SupervisoryControlModel, polled: int) -> engine.Engine
     guards = combine_guards(model, edges, lower)
     shared = share_conditions(guards, events, lower.terms, incremental=incremental)
     effects = {event: merge_effects(edges[event], lower) for event in events}
-    made = engine.EngineModel(
+    engine_model = engine.EngineModel(
         name=model.name,
         model=model,
         variables=list(variables.values()),
@@ -72,7 +72,7 @@ def _transform(model: sct.SupervisoryControlModel, polled: int) -> engine.Engine
         settlingBound=Roles(model).settling_bound,
         incremental=incremental,
     )
-    lower_timers(made, edges, lower)
+    lower_timers(engine_model, edges, lower)
     for term, condition in shared.conditions.items():
         condition.value = build_expression(term, shared, body=True)
     for event, element in events.items():
@@ -80,8 +80,8 @@ def _transform(model: sct.SupervisoryControlModel, polled: int) -> engine.Engine
         element.effect = _effect(effects[event])
     name_reasons(model, events, guards, lower)
     if incremental:
-        find_readers(made, guards, effects, shared)
-    return made
+        find_readers(engine_model, guards, effects, shared)
+    return engine_model
 
 
 def _check(model: sct.SupervisoryControlModel) -> None:
@@ -132,7 +132,7 @@ def _expression(condition: Term) -> ex.Expression | None:
     return None if condition.constant == 0 else build_expression(condition)
 
 
-def _guard(guard: GuardTerms, shared: Shared) -> engine.Guard:
+def _guard(guard: GuardTerms, shared: SharedTerms) -> engine.Guard:
 
     def build(term: Term, origins: Sequence[engine.Origin]) -> engine.Term:
         condition = build_expression(term, shared)

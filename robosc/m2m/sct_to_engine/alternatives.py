@@ -36,10 +36,10 @@ class Alternatives:
             location = origin(edge)
             self._untried[location] -= 1
             guard = terms.junction(engine.And, [self._lower(edge.guard), *self._ruled_out[location]])
-            left.setdefault(location, []).append(left_open(guard, self._denied[location], terms))
+            left.setdefault(location, []).append(remaining_guard(guard, self._denied[location], terms))
         guards = {
-            location: terms.junction(engine.Or, found) if self._untried[location] else terms.true
-            for location, found in left.items()
+            location: terms.junction(engine.Or, conditions) if self._untried[location] else terms.true
+            for location, conditions in left.items()
         }
         return self._lower.where(self._plant, guards, list(self._untried))
 
@@ -49,7 +49,7 @@ class Alternatives:
             self._ruled_out[origin(edge)].append(self._lower(edge.guard, positive=False))
 
 
-def left_open(guard: Term, denied: set[Term], terms: Terms) -> Term:
+def remaining_guard(guard: Term, denied: set[Term], terms: Terms) -> Term:
     """Return the part of a guard that the earlier guards in `denied` do not imply. Adds its opposite to `denied`."""
     parts = guard.operands if guard.operator is engine.And else (guard,)
     left = terms.junction(engine.And, [part for part in parts if part not in denied])
@@ -65,5 +65,5 @@ def exclusive(edges: Edges, lower: Lowering) -> bool:
             guard = lower(edge.guard)
             if not denied.issubset(guard.operands if guard.operator is engine.And else (guard,)):
                 return False
-            left_open(guard, denied, lower.terms)
+            remaining_guard(guard, denied, lower.terms)
     return True

@@ -12,13 +12,13 @@ from robosc.model.semantics.domains import Width, working_width
 if TYPE_CHECKING:
     from collections.abc import Collection
 
-    from robosc.m2m.sct_to_engine.share_conditions import Shared
+    from robosc.m2m.sct_to_engine.share_conditions import SharedTerms
     from robosc.m2m.sct_to_engine.terms import Term
 
 
 def build_expression(
     root: Term,
-    shared: Shared | None = None,
+    shared: SharedTerms | None = None,
     before: Collection[engine.StateVariable] = (),
     *,
     body: bool = False,
@@ -118,11 +118,11 @@ def _built(term: Term, operands: list[ex.Expression]) -> Any:
 def _convert(term: Term, numbers: list[int], operands: list[ex.Expression]) -> None:
     """Convert numeric operands to the width of the operator. Literals are converted only in a conditional."""
     choice = term.operator is ex.Conditional
-    wanted = _working(term)
+    width = _working(term)
     for position in numbers:
         operand = term.operands[position]
-        if choice if operand.constant is not None else _width(operand) != wanted:
-            operands[position] = _converted(operands[position], wanted, widens=True)
+        if choice if operand.constant is not None else _width(operand) != width:
+            operands[position] = _converted(operands[position], width, widens=True)
 
 
 def _converted(expression: ex.Expression, width: Width, *, widens: bool) -> engine.Conversion:

@@ -46,10 +46,10 @@ def collect_edges(model: sct.SupervisoryControlModel) -> EdgeTable:
     table: EdgeTable = {event: {} for plant in model.plants for event in plant.events}
     for event, by_plant in edges_by_event(model.plants).items():
         for plant, edges in by_plant.items():
-            found: Edges = {}
+            by_origin: Edges = {}
             for edge in edges:
-                found.setdefault(origin(edge), []).append(edge)
-            table[event][plant] = found
+                by_origin.setdefault(origin(edge), []).append(edge)
+            table[event][plant] = by_origin
     return table
 
 

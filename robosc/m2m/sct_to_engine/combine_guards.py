@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robosc.base.diagnostics import Diagnostic, ModelError, Severity
-from robosc.m2m.sct_to_engine.alternatives import left_open
+from robosc.m2m.sct_to_engine.alternatives import remaining_guard
 from robosc.model import engine, sct
 from robosc.model import expression as ex
 from robosc.model.places import place
@@ -76,8 +76,8 @@ def _one_of(edges: Sequence[sct.Edge], lower: Lowering) -> Term:
     if _all_covered(edges, lower):
         return lower.terms.true
     denied: set[Term] = set()
-    whole = lower.terms.junction(engine.Or, [left_open(guard, denied, lower.terms) for guard in guards])
-    if any(isinstance(read, engine.Input) for read in whole.reads()):
+    whole = lower.terms.junction(engine.Or, [remaining_guard(guard, denied, lower.terms) for guard in guards])
+    if any(isinstance(declaration, engine.Input) for declaration in whole.reads()):
         name = event_name(edges[0].event)
         message = f"`{name}` depends on its data, which the controller only receives with the event"
         hint = "remove it from plant invariants, or add an edge for all other data"
@@ -104,8 +104,8 @@ def _all_covered(edges: Sequence[sct.Edge], lower: Lowering) -> bool:
 
 def _conjuncts(condition: ex.Expression | None) -> list[ex.Expression | None]:
     """Return the parts of a left-nested conjunction, the last first. Right operands are not split."""
-    found = []
+    parts = []
     while isinstance(condition, ex.Conjunction):
-        found.append(condition.right)
+        parts.append(condition.right)
         condition = condition.left
-    return [*found, condition]
+    return [*parts, condition]

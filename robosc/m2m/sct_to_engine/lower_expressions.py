@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
 #: An expression, and its polarity (false: its negation).
-_Wanted = tuple[ex.Expression, bool]
+_Key = tuple[ex.Expression, bool]
 
 
 class Lowering:
@@ -31,7 +31,7 @@ class Lowering:
         self.terms = terms
         self.variables = variables
         self._inputs = inputs
-        self._done: dict[_Wanted, Term] = {}
+        self._done: dict[_Key, Term] = {}
 
     def __call__(self, expression: ex.Expression | None, *, positive: bool = True) -> Term:
         """Return the term of an expression, or of its negation. None means no condition and gives `true`.
@@ -40,14 +40,14 @@ class Lowering:
         """
         if expression is None:
             return self.terms.true if positive else self.terms.false
-        pending: list[tuple[_Wanted, list[_Wanted] | None]] = [((expression, positive), None)]
+        pending: list[tuple[_Key, list[_Key] | None]] = [((expression, positive), None)]
         while pending:
-            wanted, parts = pending.pop()
+            key, parts = pending.pop()
             if parts is not None:
-                self._done[wanted] = self._made(wanted, [self._done[part] for part in parts])
-            elif wanted not in self._done:
-                parts = _parts(wanted)
-                pending.append((wanted, parts))
+                self._done[key] = self._combine(key, [self._done[part] for part in parts])
+            elif key not in self._done:
+                parts = _parts(key)
+                pending.append((key, parts))
                 pending += [(part, None) for part in reversed(parts)]
         return self._done[expression, positive]
 
@@ -92,15 +92,15 @@ class Lowering:
             ],
         )
 
-    def _made(self, wanted: _Wanted, parts: list[Term]) -> Term:
-        expression, positive = wanted
-        kind = _junction(wanted)
+    def _combine(self, key: _Key, parts: list[Term]) -> Term:
+        expression, positive = key
+        kind = _junction(key)
         if kind is not None:
             return self.terms.junction(kind, parts)
         if isinstance(expression, ex.Negation):
             return parts[0]
         if isinstance(expression, ex.FunctionCall):
-            return self.terms.called(expression.function, *parts)
+            return self.terms.call(expression.function, *parts)
         if isinstance(expression, (ex.BinaryExpression, ex.UnaryMinus, ex.Conditional)):
             operator = type(expression)
             return self.terms.operation(operator if positive else COMPLEMENTS.get(operator, operator), *parts)
@@ -125,9 +125,9 @@ class Lowering:
         raise ValueError(f"an sct model holds no {type(expression).__name__}")
 
 
-def _junction(wanted: _Wanted) -> type[engine.And | engine.Or] | None:
+def _junction(key: _Key) -> type[engine.And | engine.Or] | None:
     """Return the class for a conjunction, disjunction, implication or its negation. None for other expressions."""
-    match wanted:
+    match key:
         case (ex.Conjunction(), positive):
             return engine.And if positive else engine.Or
         case (ex.Disjunction() | ex.Implication(), positive):
@@ -135,24 +135,24 @@ def _junction(wanted: _Wanted) -> type[engine.And | engine.Or] | None:
     return None
 
 
-def _parts(wanted: _Wanted) -> list[_Wanted]:
+def _parts(key: _Key) -> list[_Key]:
     """Return the parts to lower first. All operands of nested junctions of one class are parts of the outermost."""
-    kind = _junction(wanted)
+    kind = _junction(key)
     if kind is None:
-        return _children(wanted)
-    found: list[_Wanted] = []
-    pending = [wanted]
+        return _children(key)
+    parts: list[_Key] = []
+    pending = [key]
     while pending:
         part = pending.pop()
         if _junction(part) is kind or isinstance(part[0], ex.Negation):
             pending += reversed(_children(part))
         else:
-            found.append(part)
-    return found
+            parts.append(part)
+    return parts
 
 
-def _children(wanted: _Wanted) -> list[_Wanted]:
-    match wanted:
+def _children(key: _Key) -> list[_Key]:
+    match key:
         case (ex.Implication(left=left, right=right), positive):
             return [(left, not positive), (right, positive)]
         case (ex.Conjunction(left=left, right=right) | ex.Disjunction(left=left, right=right), positive):
@@ -161,4 +161,4 @@ def _children(wanted: _Wanted) -> list[_Wanted]:
             return [(operand, not positive)]
         case (ex.Conditional(condition=condition, then=then, otherwise=otherwise), positive):
             return [(condition, True), (then, positive), (otherwise, positive)]
-    return [(operand, True) for operand in operands(wanted[0])]
+    return [(operand, True) for operand in operands(key[0])]

@@ -28,17 +28,17 @@ def lower_timers(model: engine.EngineModel, edges: EdgeTable, lower: Lowering) -
             continue
         initial = timed.location is None or timed.location.initial
         length = (timed.duration or timed).milliseconds
-        made = engine.Timer(event=event, milliseconds=length, location=timed.location, initial=initial)
-        made.duration = timed.duration
-        model.timers.append(made)
+        timer = engine.Timer(event=event, milliseconds=length, location=timed.location, initial=initial)
+        timer.duration = timed.duration
+        model.timers.append(timer)
         if timed.location is not None:
             of_plant = located.setdefault(plant_of(event.event), {})
-            of_plant.setdefault(timed.location, []).append((timed, made))
+            of_plant.setdefault(timed.location, []).append((timed, timer))
             for message in timed.without:
                 listening.setdefault(message, {})[plant_of(event.event)] = None
         else:
             for message in timed.without:
-                everywhere.setdefault(message, []).append(made)
+                everywhere.setdefault(message, []).append(timer)
     for event in model.events if model.timers else ():
         taken = edges[event.event]
         for plant in dict.fromkeys([*taken, *listening.get(event.event, ())]):
@@ -66,14 +66,14 @@ def _restarts(
         for edge in leaving:
             here = timers.get(edge.target, ())
             entering = edge.target is not location or any(edge in timed.entries for timed, _ in here)
-            starts = tuple(made for timed, made in here if entering or event in timed.without)
+            starts = tuple(timer for timed, timer in here if entering or event in timed.without)
             left = entering and location in timers
             if left or starts:
                 cases.setdefault((left, starts), []).append(edge)
-    found = []
+    restarts = []
     for (left, starts), edges in cases.items():
-        found.append(_restart(Alternatives(plant, taken, lower).one_of(edges), plant if left else None, starts))
-    return found
+        restarts.append(_restart(Alternatives(plant, taken, lower).one_of(edges), plant if left else None, starts))
+    return restarts
 
 
 def _staying(
@@ -85,7 +85,7 @@ def _staying(
     """Return the timers that an event restarts in a plant without an edge for it."""
     cases: dict[tuple[engine.Timer, ...], list[sct.Location]] = {}
     for location in plant.locations:
-        starts = tuple(made for timed, made in timers.get(location, ()) if event in timed.without)
+        starts = tuple(timer for timed, timer in timers.get(location, ()) if event in timed.without)
         if starts:
             cases.setdefault(starts, []).append(location)
     return [_restart(lower.within(plant, locations), None, starts) for starts, locations in cases.items()]

@@ -38,7 +38,7 @@ class StepTerms:
     def reads(self) -> set[engine.Declaration]:
         """Return the variables and inputs that the values and conditions depend on."""
         terms = [term for condition, values in self.cases for term in (condition, *values.values())]
-        return {read for term in terms if term is not None for read in term.reads()}
+        return {declaration for term in terms if term is not None for declaration in term.reads()}
 
 
 @dataclass(frozen=True)
@@ -155,16 +155,16 @@ def _by_edge(
     If the cases are `overlapping`, the first case that holds is taken even if it changes nothing.
     """
     alternatives = Alternatives(plant, edges, lower)
-    found: list[tuple[Term | None, Values]] = []
+    changing: list[tuple[Term | None, Values]] = []
     for chosen, values in cases:
         if values:
-            found.append((alternatives.one_of(chosen), values))
+            changing.append((alternatives.one_of(chosen), values))
         elif overlapping:
             alternatives.rule_out(chosen)
-    if len(found) == len(cases):
-        found[-1] = None, cases[-1][1]
-    found = [(condition, values) for condition, values in found if condition is None or condition.constant != 0]
-    return [StepTerms(found)] if found else []
+    if len(changing) == len(cases):
+        changing[-1] = None, cases[-1][1]
+    changing = [(condition, values) for condition, values in changing if condition is None or condition.constant != 0]
+    return [StepTerms(changing)] if changing else []
 
 
 def _ordered(steps: Sequence[StepTerms]) -> list[StepTerms]:
@@ -175,7 +175,11 @@ def _ordered(steps: Sequence[StepTerms]) -> list[StepTerms]:
     writers = {variable: number for number, step in enumerate(steps) for variable in step.writes()}
     # For each step, the writers that must come after it.
     before = [
-        {writers[read] for read in step.reads() if isinstance(read, engine.StateVariable) and read in writers}
+        {
+            writers[declaration]
+            for declaration in step.reads()
+            if isinstance(declaration, engine.StateVariable) and declaration in writers
+        }
         - {number}
         for number, step in enumerate(steps)
     ]
@@ -219,4 +223,8 @@ def _read_late(steps: Sequence[StepTerms]) -> list[engine.StateVariable]:
 
 def _variables(term: Term, written: Collection[engine.StateVariable]) -> dict[engine.StateVariable, None]:
     """Return the written variables that a term reads."""
-    return dict.fromkeys(read for read in term.reads() if isinstance(read, engine.StateVariable) and read in written)
+    return dict.fromkeys(
+        declaration
+        for declaration in term.reads()
+        if isinstance(declaration, engine.StateVariable) and declaration in written
+    )

@@ -9,7 +9,7 @@ from robosc.model import expression as ex
 from robosc.model.semantics.domains import domain, storage
 from robosc.model.semantics.naming import Names
 from robosc.model.semantics.start import first_state
-from robosc.model.semantics.walks import copied
+from robosc.model.semantics.walks import copy_tree
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -25,8 +25,10 @@ def place_state(model: sct.SupervisoryControlModel) -> dict[sct.Plant | sct.Disc
     for plant in model.plants:
         for element, name, kind in _state(plant):
             variable = element if isinstance(element, sct.DiscreteVariable) else None
-            made = engine.StateVariable(plant=plant, variable=variable, name=names.fresh(name), initial=start[element])
-            placed[element] = _keep(made, kind)
+            placed_variable = engine.StateVariable(
+                plant=plant, variable=variable, name=names.fresh(name), initial=start[element]
+            )
+            placed[element] = _keep(placed_variable, kind)
     return placed
 
 
@@ -51,7 +53,7 @@ def _state(plant: sct.Plant) -> Iterator[tuple[sct.Plant | sct.DiscreteVariable,
 
 def _keep(declared: _Declared, kind: ex.Type) -> _Declared:
     """Set the type, and from it the range and the storage. The type is copied because each type has one owner."""
-    declared.type = copied(kind)
+    declared.type = copy_tree(kind)
     declared.minimum, declared.maximum = domain(kind)
     declared.bits, declared.signed = storage(domain(kind))
     return declared

@@ -25,7 +25,7 @@ _ROUNDS = 5
 _Owners = dict["Term", dict[object, None]]
 
 
-class Shared:
+class SharedTerms:
     """Shared terms, and the composition of other terms from them."""
 
     def __init__(self, terms: Sequence[Term], opposites: Mapping[Term, Term]) -> None:
@@ -39,20 +39,20 @@ class Shared:
             if term.operator in _JUNCTIONS:
                 self._with.setdefault(min(term.operands, key=parts.__getitem__), []).append(term)
 
-    def folded(self, kind: type[ex.Expression], operands: Sequence[Term], but: Term | None = None) -> dict[Term, Term]:
+    def fold(self, kind: type[ex.Expression], operands: Sequence[Term], but: Term | None = None) -> dict[Term, Term]:
         """Map each operand of a junction to itself or to a shared junction of several operands, long ones first.
 
         Does not use the term `but`: a shared term must not be composed of itself.
         """
-        given = set(operands)
-        found = [
+        operand_set = set(operands)
+        contained = [
             term
             for operand in operands
             for term in self._with.get(operand, ())
-            if term.operator is kind and term is not but and given.issuperset(term.operands)
+            if term.operator is kind and term is not but and operand_set.issuperset(term.operands)
         ]
         stands: dict[Term, Term] = {}
-        for term in sorted(found, key=lambda term: -len(term.operands)):
+        for term in sorted(contained, key=lambda term: -len(term.operands)):
             if not stands.keys() & term.operands:
                 stands |= dict.fromkeys(term.operands, term)
         return {operand: stands.get(operand, operand) for operand in operands}
@@ -61,21 +61,21 @@ class Shared:
         """Return the operands of a term. A shared junction replaces the operands that it consists of."""
         if term.operator not in _JUNCTIONS:
             return term.operands
-        return list(dict.fromkeys(self.folded(term.operator, term.operands, term).values()))
+        return list(dict.fromkeys(self.fold(term.operator, term.operands, term).values()))
 
     def inside(self, roots: Iterable[Term]) -> dict[Term, None]:
         """Return the shared terms in `roots`, without those inside other shared terms."""
-        found: dict[Term, None] = {}
+        inner: dict[Term, None] = {}
         seen = set()
         pending = list(roots)
         while pending:
             term = pending.pop()
             if term in self.conditions or term in self.denied:
-                found[self.denied.get(term, term)] = None
+                inner[self.denied.get(term, term)] = None
             elif term not in seen:
                 seen.add(term)
                 pending += self.operands(term)
-        return found
+        return inner
 
     def ask_for(self, guard: GuardTerms) -> dict[Term, list[engine.Origin]]:
         """Return the conjuncts of a guard, each with the origins that require it. A shared junction is one conjunct."""
@@ -83,43 +83,43 @@ class Shared:
             false = [origin for origin, part in guard.parts if part is guard.whole]
             either = [origin for origin, part in guard.parts if part.constant is None]
             return {} if guard.whole.constant else {guard.whole: false or either}
-        stands = self.folded(engine.And, operands_of(guard.whole))
-        asked: dict[Term, list[engine.Origin]] = {}
+        stands = self.fold(engine.And, operands_of(guard.whole))
+        conjuncts: dict[Term, list[engine.Origin]] = {}
         for origin, part in guard.parts:
             for operand in operands_of(part):
-                origins = asked.setdefault(stands[operand], [])
+                origins = conjuncts.setdefault(stands[operand], [])
                 if origin not in origins:
                     origins.append(origin)
-        return asked
+        return conjuncts
 
 
 def share_conditions(
     guards: Mapping[sct.Event, GuardTerms], events: Mapping[sct.Event, engine.Event], terms: Terms, *, incremental: bool
-) -> Shared:
+) -> SharedTerms:
     """Return the shared terms, inner ones first.
 
     A junction is shared if several guards or other shared conditions refer to it or to its opposite. One reference to
     each is not enough, because calls cost more. An incremental control loop also shares a comparison of a variable that
     is a conjunct of many guards.
     """
-    found, opposites = _find(guards.values(), terms, incremental=incremental)
+    terms_shared, opposites = _find(guards.values(), terms, incremental=incremental)
     denied = set(opposites.values())
     for _ in range(_ROUNDS):
-        shared = Shared(found, opposites)
+        shared = SharedTerms(terms_shared, opposites)
         called = Counter(term for guard in guards.values() for term in shared.inside(shared.ask_for(guard)))
-        called.update(inner for term in found for inner in shared.inside(shared.operands(term)))
-        kept = [term for term in found if called[term] > (2 if term in denied else 1)]
-        if len(kept) == len(found):
+        called.update(inner for term in terms_shared for inner in shared.inside(shared.operands(term)))
+        worthwhile = [term for term in terms_shared if called[term] > (2 if term in denied else 1)]
+        if len(worthwhile) == len(terms_shared):
             break
-        found = kept
-    shared = Shared(found, opposites)
+        terms_shared = worthwhile
+    shared = SharedTerms(terms_shared, opposites)
     for event, guard in guards.items():
         pending = list(shared.inside(shared.ask_for(guard)))
-        told = set()
+        visited = set()
         while pending:
             term = pending.pop()
-            if term not in told:
-                told.add(term)
+            if term not in visited:
+                visited.add(term)
                 shared.conditions[term].events.append(events[event])
                 pending += shared.inside(shared.operands(term))
     return shared
@@ -132,12 +132,12 @@ def _find(guards: Iterable[GuardTerms], terms: Terms, *, incremental: bool) -> t
     """
     order: dict[Term, None] = {}
     owners: _Owners = {}
-    asked: _Owners = {}
+    origins: _Owners = {}
     for guard in guards:
         if guard.whole.constant is None:
             roots = [*operands_of(guard.plants), guard.requirement, guard.synthesis]
             _refer(owners, roots, [guard])
-            _refer(asked, roots, [guard])
+            _refer(origins, roots, [guard])
             for root in roots:
                 order |= dict.fromkeys(root.below())
     number = {term: position for position, term in enumerate(order)}
@@ -148,7 +148,7 @@ def _find(guards: Iterable[GuardTerms], terms: Terms, *, incremental: bool) -> t
     }
     shared = []
     for term in reversed(order):
-        own, direct = owners.pop(term, {}), asked.pop(term, {})
+        own, direct = owners.pop(term, {}), origins.pop(term, {})
         junction = term.operator in _JUNCTIONS
         if term in opposites:
             pass  # References to it are references to its opposite.
@@ -157,7 +157,7 @@ def _find(guards: Iterable[GuardTerms], terms: Terms, *, incremental: bool) -> t
             own, direct = {term: None}, {}
         _refer(owners, [opposites[term]] if term in opposites else term.operands, own)
         if term.operator is engine.And:
-            _refer(asked, term.operands, direct)
+            _refer(origins, term.operands, direct)
     return shared[::-1], opposites
 
 
@@ -176,5 +176,6 @@ def _refer(owners: _Owners, terms: Iterable[Term], by: Iterable[object]) -> None
 
 def _reads_variable(term: Term) -> bool:
     return term.constant is None and any(
-        isinstance(read, engine.StateVariable) and read.variable is not None for read in term.reads()
+        isinstance(declaration, engine.StateVariable) and declaration.variable is not None
+        for declaration in term.reads()
     )

@@ -52,14 +52,14 @@ class Term:
         self.leaf = leaf
         self.sort = sort
         self.values = values
-        found: dict[engine.Declaration, None] = {}
+        cells: dict[engine.Declaration, None] = {}
         if isinstance(leaf, engine.Declaration):
-            found[leaf] = None
+            cells[leaf] = None
         for operand in operands:
-            found |= operand.cells
-            if len(found) > 1:
+            cells |= operand.cells
+            if len(cells) > 1:
                 break
-        self.cells = found
+        self.cells = cells
 
     @property
     def constant(self) -> int | None:
@@ -92,7 +92,7 @@ class Terms:
     """Creates terms. Simplifies them at creation as far as they are decided before the robot runs."""
 
     def __init__(self) -> None:
-        self._made: dict[Hashable, Term] = {}
+        self._cache: dict[Hashable, Term] = {}
         self._tables: dict[Term, int] = {}
         self._opposites: dict[Term, Term] = {}
         self._positions: dict[sct.Location, int] = {}
@@ -148,7 +148,7 @@ class Terms:
             return self._comparison(kind, *operands)
         return self._make(kind, operands, None, int, _interval(kind, *operands))
 
-    def called(self, function: str, value: Term, *others: Term) -> Term:
+    def call(self, function: str, value: Term, *others: Term) -> Term:
         """Return a function of integers: `mod` as a remainder, the others by cases."""
         match function, others:
             case "mod", (divisor,):
@@ -325,9 +325,9 @@ class Terms:
             return self.constant(sort, values.low)
         operands = tuple(operands)
         key = (kind, frozenset(operands) if kind in _COMMUTATIVE else operands, leaf, sort)
-        if key not in self._made:
-            self._made[key] = Term(kind, operands, leaf, sort, values)
-        return self._made[key]
+        if key not in self._cache:
+            self._cache[key] = Term(kind, operands, leaf, sort, values)
+        return self._cache[key]
 
 
 def _size(cell: engine.Declaration) -> int:

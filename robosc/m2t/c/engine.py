@@ -128,8 +128,8 @@ class _Preparation:
 
     def _meaning(self, event: engine.Event) -> str:
         carried = [f"inputs.{self._names.of(declared)}" for declared in event.inputs]
-        told = [f"It carries {', '.join(carried)}."] if carried else []
-        return comment([event.description, *event.remarks, *told], _INDENT)
+        carried_text = [f"It carries {', '.join(carried)}."] if carried else []
+        return comment([event.description, *event.remarks, *carried_text], _INDENT)
 
     def _declaration(self, declared: engine.StateVariable | engine.Input) -> dict[str, str]:
         return {
@@ -275,8 +275,8 @@ class _Preparation:
         """Return the incremental loop's tables: the readers of variables that each event writes."""
         model, queued = self._model, len(self._queued)
         conditions = [condition for condition in model.conditions if condition.readers]
-        asked = [*self._queued, *self._silent, *model.choices]
-        number = {reader: position for position, reader in enumerate((*asked, *conditions))}
+        queries = [*self._queued, *self._silent, *model.choices]
+        number = {reader: position for position, reader in enumerate((*queries, *conditions))}
         rows = [(of.name, [number[reader] for reader in of.readers]) for of in (*model.events, *conditions)]
         starts = accumulate((len(readers) for _, readers in rows), initial=0)
         places = _GENEROUS * queued
@@ -284,7 +284,7 @@ class _Preparation:
         chosen = [event.choice.variable.maximum + 1 for event in self._queued if event.choice and event.choice.variable]
         either = self._events[engine.Role.cancel] and self._events[engine.Role.trigger]
         return {
-            "watched": len(asked),
+            "watched": len(queries),
             "behind": _BEHIND,
             "after_queued": "QUEUED" if queued else "0U",
             "places": places,

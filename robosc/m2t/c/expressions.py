@@ -67,23 +67,23 @@ class CPrinter(Printer):
     def __init__(self, names: CNames) -> None:
         self._names = names
 
-    def write(self, expression: ex.Expression, given: Sequence[Printed]) -> Printed:
+    def write(self, expression: ex.Expression, printed: Sequence[Printed]) -> Printed:
         """Print an expression, with C's forms of long junctions, conversions, saturation and `?:`."""
         match expression:
             case engine.And() | engine.Or():
-                return Printed(f" {self.symbols[type(expression)]} ".join(_operands(given)), _JUNCTION)
+                return Printed(f" {self.symbols[type(expression)]} ".join(_operands(printed)), _JUNCTION)
             case ex.UnaryMinus(operand=ex.IntegerLiteral(value=value)):
                 return Printed(number(-value), _UNARY)
             case engine.Conversion(bits=16, widens=True):
-                return given[0]  # C computes in `int`, which has at least 16 bits.
+                return printed[0]  # C computes in `int`, which has at least 16 bits.
             case engine.Conversion(bits=bits, signed=signed):
-                return Printed(f"({integer_type(bits, signed=signed)}){given[0].tight}", _UNARY)
+                return Printed(f"({integer_type(bits, signed=signed)}){printed[0].tight}", _UNARY)
             case engine.Saturation(minimum=low, maximum=high):
-                return Printed(f"{clamp(expression)}({given[0].text}, {number(low)}, {number(high)})")
+                return Printed(f"{clamp(expression)}({printed[0].text}, {number(low)}, {number(high)})")
             case ex.Conditional():
-                condition, then, otherwise = (around(part, _CONDITIONAL + 1) for part in given)
+                condition, then, otherwise = (around(part, _CONDITIONAL + 1) for part in printed)
                 return Printed(f"{condition} ? {then} : {otherwise}", _CONDITIONAL)
-        return super().write(expression, given)
+        return super().write(expression, printed)
 
     def binary(self, expression: ex.BinaryExpression, left: Printed, right: Printed) -> Printed:
         """Print a binary operator. A number compared with an unsigned one is unsigned; a condition gets parentheses."""
@@ -155,20 +155,20 @@ class CPrinter(Printer):
         return [*lines, "}"]
 
 
-def around(given: Printed, least: int) -> str:
+def around(printed: Printed, least: int) -> str:
     """Return the text, in parentheses if it binds less tightly than `least`."""
-    return given.text if given.precedence >= least else f"({given.text})"
+    return printed.text if printed.precedence >= least else f"({printed.text})"
 
 
-def _operands(given: Iterable[Printed]) -> list[str]:
+def _operands(printed: Iterable[Printed]) -> list[str]:
     """Return the operands of a conjunction or disjunction."""
-    return [around(part, _JUNCTION + 1) for part in given]
+    return [around(part, _JUNCTION + 1) for part in printed]
 
 
-def _compared(side: ex.Expression, other: ex.Expression, given: Printed) -> str:
+def _compared(side: ex.Expression, other: ex.Expression, printed: Printed) -> str:
     if isinstance(side, ex.IntegerLiteral) and _is_unsigned(other):
-        return f"{given.text}U"
-    return given.tight if isinstance(side, ex.Negation) else around(given, PRECEDENCE[ex.Addition])
+        return f"{printed.text}U"
+    return printed.tight if isinstance(side, ex.Negation) else around(printed, PRECEDENCE[ex.Addition])
 
 
 def _is_unsigned(node: ex.Expression) -> bool:

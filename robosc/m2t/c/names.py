@@ -121,4 +121,4 @@ class CNames:
 
 def identifier(name: str) -> str:
     """Return the name in ASCII letters, digits and underscores. Other characters become their code."""
-    return re.sub(r"[^A-Za-z0-9_]", lambda found: f"_u{ord(found[0]):04x}", name)
+    return re.sub(r"[^A-Za-z0-9_]", lambda match: f"_u{ord(match[0]):04x}", name)

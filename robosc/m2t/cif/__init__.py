@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from robosc.base.diagnostics import Diagnostic, ModelError, Severity
 from robosc.m2m.sct_to_cif import transform
-from robosc.m2t.cif.extension import extended
+from robosc.m2t.cif.extension import write_extension
 from robosc.m2t.cif.specification import Writer
 from robosc.model import expression as ex
 from robosc.model.places import place
@@ -40,7 +40,7 @@ def preconditions(models: Models, _configuration: Configuration) -> list[Diagnos
         hint = "add a component with a message, a service, an action or a behaviour"
         return [_finding(models.sct, reason, hint)]
     named = (element for _, element in tree(models.sct) if isinstance(element, ex.NamedElement))
-    found = [
+    findings = [
         _finding(element, f"'{element.name}' is not an identifier", "use a name of letters, digits and `_`")
         for element in named
         if not _NAME.fullmatch(element.name)
@@ -48,8 +48,8 @@ def preconditions(models: Models, _configuration: Configuration) -> list[Diagnos
     try:
         transform(models.sct)
     except ModelError as error:
-        found += error.diagnostics
-    return found
+        findings += error.diagnostics
+    return findings
 
 
 def generate(models: Models, _configuration: Configuration) -> dict[str, str]:
@@ -60,12 +60,16 @@ def generate(models: Models, _configuration: Configuration) -> dict[str, str]:
     """
     name, supervisor = models.sct.name, models.sct.supervisor
     if is_from_cif(models.sct):
-        return {} if supervisor is None else {f"{name}.supervised.cif": extended(models.sct, supervisor, models.folder)}
+        return (
+            {}
+            if supervisor is None
+            else {f"{name}.supervised.cif": write_extension(models.sct, supervisor, models.folder)}
+        )
     lowered = transform(models.sct)
     writer = Writer(lowered)
-    files = {f"{name}.cif": writer.unsupervised()}
+    files = {f"{name}.cif": writer.write_plants()}
     if lowered.model.supervisor is not None:
-        files[f"{name}.supervised.cif"] = writer.supervised(lowered.model.supervisor)
+        files[f"{name}.supervised.cif"] = writer.write_supervisor(lowered.model.supervisor)
     return files
 
 

@@ -31,20 +31,20 @@ class CifPrinter(Printer):
         """Return the parts of nested conditionals together: CIF has one form for a chain."""
         if not isinstance(expression, ex.Conditional):
             return super().inside(expression)
-        found: list[ex.Expression] = []
+        parts: list[ex.Expression] = []
         rest: ex.Expression = expression
         while isinstance(rest, ex.Conditional):
-            found += [rest.condition, rest.then]
+            parts += [rest.condition, rest.then]
             rest = rest.otherwise
-        return [*found, rest]
+        return [*parts, rest]
 
-    def write(self, expression: ex.Expression, given: Sequence[Printed]) -> Printed:
+    def write(self, expression: ex.Expression, printed: Sequence[Printed]) -> Printed:
         """Print an expression; a conditional becomes `if a: b elif c: d else e end`."""
         if isinstance(expression, ex.Conditional):
-            *cases, otherwise = [text for text, _ in given]
-            asked = (f"{condition}: {value}" for condition, value in zip(cases[::2], cases[1::2], strict=True))
-            return Printed(f"if {f'{BREAK}elif '.join(asked)}{BREAK}else {otherwise} end")
-        return super().write(expression, given)
+            *cases, otherwise = [text for text, _ in printed]
+            branches = (f"{condition}: {value}" for condition, value in zip(cases[::2], cases[1::2], strict=True))
+            return Printed(f"if {f'{BREAK}elif '.join(branches)}{BREAK}else {otherwise} end")
+        return super().write(expression, printed)
 
     def binary(self, expression: ex.BinaryExpression, left: Printed, right: Printed) -> Printed:
         """Print a binary operator. CIF does not chain implications."""
@@ -63,11 +63,11 @@ class CifPrinter(Printer):
         """Return a name, qualified by its plant, or a literal."""
         match expression:
             case ex.EnumerationLiteralReference():
-                return self._names.used(expression.literal, self._plant)
+                return self._names.used_name(expression.literal, self._plant)
             case sct.LocationReference():
-                return self._names.used(expression.location, self._plant)
+                return self._names.used_name(expression.location, self._plant)
             case sct.VariableReference():
-                return self._names.used(expression.variable, self._plant)
+                return self._names.used_name(expression.variable, self._plant)
             case sct.InputReference():
-                return self._names.used(expression.input, self._plant)
+                return self._names.used_name(expression.input, self._plant)
         return super().atom(expression)

@@ -12,12 +12,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robosc.m2t.cif.expressions import CifPrinter
-from robosc.m2t.cif.names import AbsoluteNames, escaped
-from robosc.m2t.cif.specification import document, edge_text, folded, listed
+from robosc.m2t.cif.names import AbsoluteNames, escape_keyword
+from robosc.m2t.cif.specification import document, edge_text, fold_lines, join_by_commas
 from robosc.model.semantics.naming import Names
 from robosc.model.semantics.printing import conjunction
 from robosc.model.semantics.roles import event_name
-from robosc.model.semantics.walks import copied
+from robosc.model.semantics.walks import copy_tree
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -26,13 +26,13 @@ if TYPE_CHECKING:
     from robosc.model import sct
 
 
-def extended(model: sct.SupervisoryControlModel, supervisor: sct.Supervisor, folder: Path | None) -> str:
+def write_extension(model: sct.SupervisoryControlModel, supervisor: sct.Supervisor, folder: Path | None) -> str:
     """Return a specification that imports the model's own and adds an automaton with the missing conditions.
 
     The requirements in the text stay unchanged: all of CIF's tools except synthesis treat them as normal automata.
     `folder` is the folder of the new file. None: the folder of the model's own file, also if that is unknown.
     """
-    return folded(list(_lines(model, supervisor, folder)))
+    return fold_lines(list(_lines(model, supervisor, folder)))
 
 
 def _imported(model: sct.SupervisoryControlModel, folder: Path | None) -> str:
@@ -61,15 +61,15 @@ def _lines(model: sct.SupervisoryControlModel, supervisor: sct.Supervisor, folde
     added = any(lacking.values())
     yield from document(["What synthesis added." if added else "Synthesis added nothing to the requirements."])
     yield f"supervisor automaton {Names(taken).fresh('sup')}:"
-    events = {event: escaped(event_name(event)) for event in lacking}
-    yield f"  alphabet {listed(events.values())};" if events else "  alphabet;"
+    events = {event: escape_keyword(event_name(event)) for event in lacking}
+    yield f"  alphabet {join_by_commas(events.values())};" if events else "  alphabet;"
     if supervisor.initial is not None:
         yield f"  initial {printer(supervisor.initial)};"
     yield ""
     yield "  location:"
     yield "    initial; marked;"
     for event, parts in lacking.items():
-        guard = conjunction(map(copied, parts))
+        guard = conjunction(map(copy_tree, parts))
         yield edge_text(events[event], "" if guard is None else printer(guard))
     yield "end"
 

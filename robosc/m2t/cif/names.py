@@ -29,7 +29,7 @@ and div in mod not or sample sub
 KEYWORDS = frozenset(_WORDS.split())
 
 
-def escaped(name: str) -> str:
+def escape_keyword(name: str) -> str:
     """Return a name of one identifier, with a dollar sign before it if it is a keyword."""
     return f"${name}" if name in KEYWORDS else name
 
@@ -64,22 +64,22 @@ class CifNames:
         literals = [literal for enumeration in model.enumerations for literal in enumeration.literals]
         return [*model.plants, *model.enumerations, *literals]
 
-    def declared(self, element: ex.NamedElement) -> str:
+    def declared_name(self, element: ex.NamedElement) -> str:
         """Return the name at the element's declaration and within its plant."""
-        return escaped(self._names[element])
+        return escape_keyword(self._names[element])
 
-    def used(self, element: ex.NamedElement, plant: sct.Plant | None) -> str:
+    def used_name(self, element: ex.NamedElement, plant: sct.Plant | None) -> str:
         """Return the name as it is used inside a plant, or outside of all plants."""
         owner = element.eContainer()
         if owner is plant or owner not in self._names or not hasattr(owner, "locations"):
-            return self.declared(element)
-        return f"{self.declared(owner)}.{self.declared(element)}"
+            return self.declared_name(element)
+        return f"{self.declared_name(owner)}.{self.declared_name(element)}"
 
 
 class AbsoluteNames:
     """Names as they are used outside of all automata."""
 
-    def used(self, element: ex.NamedElement, _plant: sct.Plant | None) -> str:
+    def used_name(self, element: ex.NamedElement, _plant: sct.Plant | None) -> str:
         """Return a name with all its scopes."""
         around = element.eContainer().origin
-        return f"{around}.{element.name}" if around else escaped(element.name)
+        return f"{around}.{element.name}" if around else escape_keyword(element.name)

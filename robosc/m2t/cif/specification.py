@@ -18,7 +18,7 @@ from robosc.model.semantics.roles import input_values, provide_numbers
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from robosc.m2m.sct_to_cif import Lowered
+    from robosc.m2m.sct_to_cif import LoweredModel
 
 #: Maximum number of characters in a line. A longer word gets a line of its own.
 _WIDTH = 120
@@ -27,37 +27,37 @@ _WIDTH = 120
 class Writer:
     """Writes CIF for a lowered sct model."""
 
-    def __init__(self, lowered: Lowered) -> None:
+    def __init__(self, lowered: LoweredModel) -> None:
         self._model, self._originals = lowered
         self._names = CifNames(self._model)
         self._outside = CifPrinter(self._names, None)
         original = self._originals[self._model]
         self._meanings = {**_transitions(original), **_choices(original)}
 
-    def unsupervised(self) -> str:
+    def write_plants(self) -> str:
         """Return the plants and the requirements."""
         lines = document([f"The plants and requirements of {self._model.name}."], sign="@@")
-        return folded([*lines, *self._plants("requirement automaton"), *self._requirements()])
+        return fold_lines([*lines, *self._plants("requirement automaton"), *self._requirements()])
 
-    def supervised(self, supervisor: sct.Supervisor) -> str:
+    def write_supervisor(self, supervisor: sct.Supervisor) -> str:
         """Return the plants with their supervisor: its requirements, and an automaton of its additions."""
-        events = [self._names.used(guard.event, None) for guard in supervisor.guards]
-        kept = [
+        events = [self._names.used_name(guard.event, None) for guard in supervisor.guards]
+        requirements = [
             f"supervisor invariant {event}{BREAK}needs {self._outside(guard.requirement)};"
             for event, guard in zip(events, supervisor.guards, strict=True)
             if guard.requirement is not None
         ]
         added = any(guard.synthesis for guard in supervisor.guards)
-        return folded(
+        return fold_lines(
             [
                 *document(self._counted(supervisor), sign="@@"),
                 *self._plants("supervisor automaton"),
-                *([""] if kept else []),
-                *kept,
+                *([""] if requirements else []),
+                *requirements,
                 "",
                 *document(["What synthesis added." if added else "Synthesis added nothing to the requirements."]),
                 f"supervisor automaton {self._names.supervisor}:",
-                f"  alphabet {listed(events)};" if events else "  alphabet;",
+                f"  alphabet {join_by_commas(events)};" if events else "  alphabet;",
                 "",
                 "  location:",
                 "    initial; marked;",
@@ -78,30 +78,30 @@ class Writer:
         if self._model.enumerations:
             yield ""
         for enumeration in self._model.enumerations:
-            literals = listed(map(self._names.declared, enumeration.literals))
-            yield f"enum {self._names.declared(enumeration)} = {literals};"
+            literals = join_by_commas(map(self._names.declared_name, enumeration.literals))
+            yield f"enum {self._names.declared_name(enumeration)} = {literals};"
         for plant in self._model.plants:
             kind = requirement if plant.kind == sct.PlantKind.requirement else "plant"
-            yield from ["", f"{kind} {self._names.declared(plant)}:", *self._plant(plant), "end"]
+            yield from ["", f"{kind} {self._names.declared_name(plant)}:", *self._plant(plant), "end"]
 
     def _requirements(self) -> Iterator[str]:
         """Return the requirements of the model. Equal conditions on an event appear once."""
         texts: dict[str, list[str]] = {}
         for requirement in self._model.requirements:
-            event, asked = self._names.used(requirement.event, None), self._outside(requirement.condition)
+            event, condition = self._names.used_name(requirement.event, None), self._outside(requirement.condition)
             needs = requirement.kind == sct.RequirementKind.needs
-            parts = (event, f"needs {asked}") if needs else (asked, f"disables {event}")
-            said = f"requirement {BREAK.join(parts)};"
-            texts.setdefault(said, []).append(requirement.text or "")
+            parts = (event, f"needs {condition}") if needs else (condition, f"disables {event}")
+            statement = f"requirement {BREAK.join(parts)};"
+            texts.setdefault(statement, []).append(requirement.text or "")
         for invariant in self._model.invariants:
             name = self._names.invariants.get(invariant)
             named = "" if name is None else f" {name}:"
-            said = f"requirement invariant{named} {self._outside(invariant.condition)};"
-            texts.setdefault(said, []).append(invariant.text or "")
+            statement = f"requirement invariant{named} {self._outside(invariant.condition)};"
+            texts.setdefault(statement, []).append(invariant.text or "")
         if texts:
             yield ""
-        for text, found in texts.items():
-            yield from [*document(dict.fromkeys(filter(None, found))), text]
+        for text, descriptions in texts.items():
+            yield from [*document(dict.fromkeys(filter(None, descriptions))), text]
 
     def _plant(self, plant: sct.Plant) -> Iterator[str]:
         """Return the contents of a plant."""
@@ -109,7 +109,7 @@ class Writer:
         declared = [*self._events(plant), *self._variables(plant, printer)]
         yield from [*declared, *([""] if declared else [])]
         for location in plant.locations:
-            name = f" {self._names.declared(location)}" if location.name else ""
+            name = f" {self._names.declared_name(location)}" if location.name else ""
             marks = ["initial;"] * location.initial + ["marked;"] * location.marked
             inside = [f"    {' '.join(marks)}"] if marks else []
             inside += [self._edge(edge, location, plant, printer) for edge in edges_from(location)]
@@ -124,54 +124,56 @@ class Writer:
         for (controllable, meaning), events in alike:
             yield from document([meaning] if meaning else [], "  ")
             kind = "controllable" if controllable else "uncontrollable"
-            yield f"  {kind} {listed(map(self._names.declared, events))};"
+            yield f"  {kind} {join_by_commas(map(self._names.declared_name, events))};"
 
     def _variables(self, plant: sct.Plant, printer: CifPrinter) -> Iterator[str]:
         """Return the inputs and variables of a plant, with a note on each whose number differs from the model's."""
         members: list[sct.Input | sct.DiscreteVariable] = [*plant.inputs, *plant.variables]
         for member in members:
-            name, kind = self._names.declared(member), "bool"
+            name, kind = self._names.declared_name(member), "bool"
             if isinstance(member.type, ex.EnumerationType):
-                kind = self._names.declared(member.type.enumeration)
+                kind = self._names.declared_name(member.type.enumeration)
             elif isinstance(member.type, ex.IntegerType):
                 kind = f"int[{member.type.minimum}..{member.type.maximum}]"
-                yield from document(self._held(member, member.type), "  ")
+                yield from document(self._range_declarations(member, member.type), "  ")
             initial = member.initial if isinstance(member, sct.DiscreteVariable) else None
             yield f"  input {kind} {name};" if initial is None else f"  disc {kind} {name} = {printer(initial)};"
 
-    def _held(self, member: sct.Input | sct.DiscreteVariable, kind: ex.IntegerType) -> list[str]:
+    def _range_declarations(self, member: sct.Input | sct.DiscreteVariable, kind: ex.IntegerType) -> list[str]:
         """Return notes on the number in an integer variable."""
         if member not in self._originals:
             return ["The number of the provide statement that is chosen, 0 for none."]
-        name, original = self._names.declared(member), self._originals[member].type
+        name, original = self._names.declared_name(member), self._originals[member].type
         added = kind.minimum - original.minimum
         return [f"{name} + {added}, with {name} in {original.minimum}..{original.maximum}"] if added else []
 
     def _edge(self, edge: sct.Edge, location: sct.Location, plant: sct.Plant, printer: CifPrinter) -> str:
-        updates = (f"{self._names.declared(update.variable)} := {printer(update.value)}" for update in edge.updates)
+        updates = (
+            f"{self._names.declared_name(update.variable)} := {printer(update.value)}" for update in edge.updates
+        )
         return edge_text(
-            self._names.used(edge.event, plant),
+            self._names.used_name(edge.event, plant),
             "" if edge.guard is None else printer(edge.guard),
-            listed(updates),
-            "" if edge.target is location else self._names.declared(edge.target),
+            join_by_commas(updates),
+            "" if edge.target is location else self._names.declared_name(edge.target),
         )
 
     def _counted(self, supervisor: sct.Supervisor) -> list[str]:
         """Return the state counts of the supervised plants, as RoboSC and as CIF count them."""
         inputs = input_values(self._model)
         left, all_of = supervisor.controlledStates, supervisor.uncontrolledStates
-        told = f"The plants of {self._model.name} under their supervisor"
+        subject = f"The plants of {self._model.name} under their supervisor"
         if left is None or all_of is None:  # The supervisor of a saved model may have no counts.
-            return [f"{told}."]
+            return [f"{subject}."]
         # Python prints numbers of thousands of digits only as decimals.
         here, there = (f"{Decimal(left * times)} of {Decimal(all_of * times)}" for times in (1, inputs))
         counts = f"CIF counts {there}: each of them with the {Decimal(inputs)} values of the inputs."
-        return [f"{told}, which leaves them {here} states.", *([counts] if inputs > 1 else [])]
+        return [f"{subject}, which leaves them {here} states.", *([counts] if inputs > 1 else [])]
 
 
 def document(texts: Iterable[str], indent: str = "", sign: str = "@") -> list[str]:
     """Return annotations with these texts."""
-    return [f"{indent}{sign}doc({quoted(text)})" for text in texts]
+    return [f"{indent}{sign}doc({quote(text)})" for text in texts]
 
 
 def edge_text(event: str, guard: str, updates: str = "", target: str = "") -> str:
@@ -180,12 +182,12 @@ def edge_text(event: str, guard: str, updates: str = "", target: str = "") -> st
     return f"    edge {event}{''.join(f'{BREAK}{word} {text}' for word, text in parts if text)};"
 
 
-def listed(texts: Iterable[str]) -> str:
+def join_by_commas(texts: Iterable[str]) -> str:
     """Return texts joined by commas."""
     return f",{BREAK}".join(texts)
 
 
-def quoted(text: str) -> str:
+def quote(text: str) -> str:
     """Return a text as a CIF string in ASCII. A long one becomes a sum of strings, which may span several lines."""
     shown = " ".join(text.split()).encode("ascii", "backslashreplace").decode()
     shown = "".join(character if character.isprintable() else f"\\x{ord(character):02x}" for character in shown)
@@ -193,7 +195,7 @@ def quoted(text: str) -> str:
     return f"{BREAK}+ ".join('"' + part.replace("\\", "\\\\").replace('"', '\\"') + '"' for part in parts)
 
 
-def folded(lines: Iterable[str]) -> str:
+def fold_lines(lines: Iterable[str]) -> str:
     """Return declarations in lines of readable length."""
     return "".join(map(_folded, lines))
 
@@ -202,15 +204,15 @@ def _folded(line: str) -> str:
     if len(line) <= _WIDTH:
         return f"{line.replace(BREAK, ' ')}\n"
     indent = " " * (len(line) - len(line.lstrip(" ")))
-    made, length = "", 0
+    text, length = "", 0
     for part in line.split(BREAK):
-        if made and length + 1 + len(part) > _WIDTH:
-            made += f"\n{indent}  {part}"
+        if text and length + 1 + len(part) > _WIDTH:
+            text += f"\n{indent}  {part}"
             length = len(indent) + 2 + len(part)
         else:
-            made += f" {part}" if made else part
+            text += f" {part}" if text else part
             length += 1 + len(part)
-    return f"{made}\n"
+    return f"{text}\n"
 
 
 def _transitions(model: sct.SupervisoryControlModel) -> dict[sct.Event, str]:

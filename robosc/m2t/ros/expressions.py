@@ -9,7 +9,7 @@ from robosc.m2t.c.expressions import number
 from robosc.model import expression as ex
 from robosc.model import rosgraph, sct
 from robosc.model.semantics.messages import reads_parameters
-from robosc.model.semantics.operators import ARITHMETIC, PRECEDENCE, SYMBOLS, Rule, operator_of
+from robosc.model.semantics.operators import ARITHMETIC, PRECEDENCE, SYMBOLS, TypeRule, operator_of
 from robosc.model.semantics.printing import Printed, Printer
 from robosc.model.semantics.typing import DOUBLE, Types
 from robosc.model.semantics.walks import fold, operands
@@ -26,7 +26,7 @@ _CONVERSIONS: dict[type[ex.Type | None], str] = {
 }
 
 
-def converted(place: str, kind: ex.Type | None) -> str:
+def convert(place: str, kind: ex.Type | None) -> str:
     """Return a place in ROS data as a value of a type of the model."""
     conversion = _CONVERSIONS.get(type(kind))
     return f"{conversion}({place})" if conversion else place
@@ -79,18 +79,18 @@ class CppPrinter(Printer):
             return [expression.otherwise]  # the value has a reader of its own
         return operands(expression.argument if isinstance(expression, rosgraph.ConversionCall) else expression)
 
-    def write(self, expression: ex.Expression, given: Sequence[Printed]) -> Printed:
+    def write(self, expression: ex.Expression, printed: Sequence[Printed]) -> Printed:
         """Print an expression. A state becomes a comparison, a conversion becomes a call."""
         if isinstance(expression, sct.LocationReference):
             return self._names.location(expression.location)
-        texts = [text for text, _ in given]
+        texts = [text for text, _ in printed]
         match expression:
             case rosgraph.WireAccess():
-                return Printed(converted(self.wire(expression, texts), expression.type))
+                return Printed(convert(self.wire(expression, texts), expression.type))
             case rosgraph.ConversionCall():
-                read = self.wire(expression.argument, texts)
-                kept = f", {self._node}" if reads_parameters(expression.conversion) else ""
-                return Printed(f"{self._names.conversion(expression.conversion)}({read}{kept})")
+                argument = self.wire(expression.argument, texts)
+                node_argument = f", {self._node}" if reads_parameters(expression.conversion) else ""
+                return Printed(f"{self._names.conversion(expression.conversion)}({argument}{node_argument})")
             case rosgraph.IfReadable():
                 value = CppPrinter(self._names, self._data, self._node, reader="element")(expression.value)
                 return Printed(f"read_or({texts[0]}, [&](ArrayReader& element) {{ return {value}; }})")
@@ -101,13 +101,13 @@ class CppPrinter(Printer):
                     f"{_QUANTIFIERS[str(expression.quantifier)]}({array}, [&]({element}) {{ return {body}; }})"
                 )
         if isinstance(expression, ex.DoubleConversion):
-            return Printed(f"static_cast<double>({given[0].text})")
+            return Printed(f"static_cast<double>({printed[0].text})")
         if isinstance(expression, ex.Conditional):
-            condition, then, otherwise = given
+            condition, then, otherwise = printed
             then, otherwise = Printed(then.tight), Printed(otherwise.tight)
             then_text, other = self._whole(expression.then, then), self._whole(expression.otherwise, otherwise)
             return Printed(f"({condition.tight} ? {then_text} : {other})")
-        return super().write(expression, given)
+        return super().write(expression, printed)
 
     def binary(self, expression: ex.BinaryExpression, left: Printed, right: Printed) -> Printed:
         """Print a binary operator.
@@ -129,20 +129,20 @@ class CppPrinter(Printer):
             return Printed(number(-expression.operand.value), PRECEDENCE[ex.UnaryMinus])
         return super().unary(expression, operand)
 
-    def call(self, expression: ex.FunctionCall, given: Sequence[Printed]) -> Printed:
+    def call(self, expression: ex.FunctionCall, printed: Sequence[Printed]) -> Printed:
         """Print a call of a function in the header `data.hpp`. Partial functions are methods of the reader."""
         row = operator_of(expression)
         assert row is not None
-        arguments = map(self._whole, expression.arguments, given)
+        arguments = map(self._whole, expression.arguments, printed)
         name = _FUNCTIONS.get(row.symbol, row.symbol)
-        if row.rule is Rule.ELEMENTS:
+        if row.rule is TypeRule.ELEMENTS:
             number = "double" if self._double(expression) else "Integer"
             name = f"{_OF_ARRAYS[row.symbol]}<{number}>"
         owner = f"{self._reader}." if row.is_partial else ""
         return Printed(f"{owner}{name}({', '.join(arguments)})")
 
-    def _whole(self, expression: ex.Expression, given: Printed) -> str:
-        return f"Integer({given.text})" if self._constant(expression) else given.text
+    def _whole(self, expression: ex.Expression, printed: Printed) -> str:
+        return f"Integer({printed.text})" if self._constant(expression) else printed.text
 
     def atom(self, expression: ex.Expression) -> str:
         """Return a literal, or a reference to the state, the node's variables or the incoming data."""
@@ -188,10 +188,10 @@ class CppPrinter(Printer):
         bounds = ""
         if kind.minimum is not None and kind.maximum is not None:
             bounds = f".within({number(kind.minimum)}, {number(kind.maximum)})"
-        given = self.printed(expression)
+        value = self.printed(expression)
         if self._constant(expression):
-            return f"Integer({given.text}){bounds}"
-        return f"{given.tight}{bounds}" if bounds else given.text
+            return f"Integer({value.text}){bounds}"
+        return f"{value.tight}{bounds}" if bounds else value.text
 
     def tight(self, expression: ex.Expression) -> str:
         """Return the text, in parentheses if it is not a single operand."""
@@ -208,8 +208,8 @@ def _element(quantifier: rosgraph.ArrayQuantifier) -> str:
     return f"element_{quantifier.name}"
 
 
-def _is_constant(expression: ex.Expression, given: list[bool]) -> bool:
+def _is_constant(expression: ex.Expression, operands_constant: list[bool]) -> bool:
     """Return whether the expression consists of integer literals only."""
     return isinstance(expression, ex.IntegerLiteral) or (
-        isinstance(expression, (ex.BinaryExpression, ex.UnaryExpression)) and all(given)
+        isinstance(expression, (ex.BinaryExpression, ex.UnaryExpression)) and all(operands_constant)
     )

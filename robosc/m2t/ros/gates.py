@@ -15,7 +15,7 @@ from robosc.model.semantics.roles import plant_of
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from robosc.m2t.ros.node import Node
+    from robosc.m2t.ros.node import GeneratedNode
     from robosc.model import expression as ex
 
 #: Method of the header's `BlockReasons` that adds a reason, by the origin of the reason.
@@ -27,7 +27,7 @@ _ADDED_BY = {
 
 
 @dataclass(frozen=True)
-class Reason:
+class GateReason:
     """A reason: its condition, if any, the method that adds it, and its text as a C++ expression."""
 
     condition: str | None
@@ -47,10 +47,10 @@ class Gate:
     event: str
     name: str
     requirements: Sequence[str]
-    reasons: Sequence[Reason]
+    reasons: Sequence[GateReason]
 
 
-def gates(graph: rosgraph.RosGraph, node: Node, executed: engine.EngineModel) -> dict[rosgraph.Sending, Gate]:
+def gates(graph: rosgraph.RosGraph, node: GeneratedNode, executed: engine.EngineModel) -> dict[rosgraph.Sending, Gate]:
     """Return the gate of each command of a node."""
     sendings = [sending for publisher in graph.publishers for sending in publisher.sendings]
     sendings += [service.request for service in graph.serviceClients]
@@ -85,16 +85,16 @@ class _Printer(CPrinter):
         super().__init__(names.c)
         self._places = names
 
-    def write(self, expression: ex.Expression, given: Sequence[Printed]) -> Printed:
+    def write(self, expression: ex.Expression, printed: Sequence[Printed]) -> Printed:
         """Print an expression. A conversion becomes a C++ cast."""
         if isinstance(expression, engine.Conversion) and not (expression.widens and expression.bits == 16):
             kind = integer_type(expression.bits, signed=expression.signed)
-            return Printed(f"static_cast<std::{kind}>({given[0].text})")
-        return super().write(expression, given)
+            return Printed(f"static_cast<std::{kind}>({printed[0].text})")
+        return super().write(expression, printed)
 
-    def reason(self, reason: engine.Reason) -> Reason:
+    def reason(self, reason: engine.Reason) -> GateReason:
         text = string_literal(reason.text)
         if reason.location is not None:
             plant = reason.location.plant
             text = f"std::string({text}) + {self._places.c.lookup(plant)}({self._places.state(plant)})"
-        return Reason(self(reason.condition) if reason.condition else None, _ADDED_BY[reason.kind], text)
+        return GateReason(self(reason.condition) if reason.condition else None, _ADDED_BY[reason.kind], text)

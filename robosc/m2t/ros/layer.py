@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from robosc.m2t.ros.gates import Gate
-    from robosc.m2t.ros.node import EventHandler, Node
+    from robosc.m2t.ros.node import EventHandler, GeneratedNode
     from robosc.model import engine, rosgraph
 
 
@@ -22,7 +22,7 @@ class LayerNode:
     """
 
     def __init__(
-        self, graph: rosgraph.RosGraph, node: Node, gates: Iterable[Gate], executed: engine.EngineModel
+        self, graph: rosgraph.RosGraph, node: GeneratedNode, gates: Iterable[Gate], executed: engine.EngineModel
     ) -> None:
         self.node = node
         messages = [message for publisher in self.node.publishers for message in publisher.messages]

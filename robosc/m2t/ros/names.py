@@ -31,15 +31,15 @@ class CppNames:
         }
         self._conversions = _fresh(graph.conversions)
         #: Variables of the node by component.
-        self.kept: dict[str, list[rosgraph.NodeVariable]] = {}
+        self.stored: dict[str, list[rosgraph.NodeVariable]] = {}
         for variable in graph.variables:
-            self.kept.setdefault(variable.component or "", []).append(variable)
+            self.stored.setdefault(variable.component or "", []).append(variable)
         components = Names(TAKEN)
-        self.components = {name: components.fresh(identifier(name)) for name in self.kept}
+        self.components = {name: components.fresh(identifier(name)) for name in self.stored}
         #: The parameters share the scope of the components.
         self.parameters = components.fresh("parameters")
         self._variables = {
-            variable: name for variables in self.kept.values() for variable, name in _fresh(variables).items()
+            variable: name for variables in self.stored.values() for variable, name in _fresh(variables).items()
         } | _fresh(graph.parameters)
         self._words = topic_words(graph)
 

@@ -13,12 +13,12 @@ from robosc.m2t.ros.names import CppNames
 from robosc.model import engine, rosgraph, sct
 from robosc.model import expression as ex
 from robosc.model.reflection import tree
-from robosc.model.semantics.definition import reported
+from robosc.model.semantics.definition import reported_variables
 from robosc.model.semantics.messages import (
+    find_message,
     first_value,
     holds_objects,
     is_structured,
-    message_named,
     parts_with_headers,
     paths_set,
     reads_elements,
@@ -187,7 +187,7 @@ class Enumeration:
 
 
 @dataclass(frozen=True)
-class Rule:
+class ConversionRule:
     """A rule of a conversion."""
 
     condition: str
@@ -202,7 +202,7 @@ class Conversion:
     name: str
     function: str
     type: str
-    rules: list[Rule]
+    rules: list[ConversionRule]
     default: str
     reads_parameters: bool
 
@@ -235,7 +235,7 @@ class Part:
     is_array: bool
 
 
-class Node:
+class GeneratedNode:
     """The node of one graph, prepared for the templates, in the order of the model.
 
     `on_shutdown` names the messages to send when the node stops the robot, `on_withheld` those to send if the data of a
@@ -273,7 +273,7 @@ class Node:
             self._carriers |= dict.fromkeys([action.error, action.canceled], ("response", action.interface))
         self.components = [
             (self._names.components[component], list(map(self._variable, variables)))
-            for component, variables in self._names.kept.items()
+            for component, variables in self._names.stored.items()
         ]
         if graph.parameters:
             self.components.append((self._names.parameters, list(map(self._variable, graph.parameters))))
@@ -307,7 +307,7 @@ class Node:
             outside |= {action.request.event, action.feedback.event, action.response.event}
             outside |= {action.error.event, action.canceled.event}
         self.internal = [self._handler(event) for event in self._reactions if event not in outside]
-        shown = reported(graph)
+        shown = reported_variables(graph)
         self.reported = [
             reports.component(plant, shown.get(plant.origin, ()), self._names)
             for plant in graph.model.plants
@@ -330,24 +330,24 @@ class Node:
         """Whether the node sends received objects unchanged."""
         messages = [message for publisher in self.publishers for message in publisher.messages]
         messages += [client.request for client in self.clients]
-        fields = [field for message in messages for given in message.alternatives for field in given.fields]
+        fields = [field for message in messages for alternative in message.alternatives for field in alternative.fields]
         return any(method == _HAND_ON for method, _, _ in fields)
 
     @property
     def reason(self) -> Reasons | None:
         """Literals for the reasons of errors. None if the node reads no reasons."""
-        read = next((part for _, part in tree(self._graph) if isinstance(part, rosgraph.ErrorReason)), None)
-        if read is None:
+        error_reason = next((part for _, part in tree(self._graph) if isinstance(part, rosgraph.ErrorReason)), None)
+        if error_reason is None:
             return None
-        literals = [(literal.name, self._names.literal(literal)) for literal in read.enumeration.literals]
-        return Reasons(self._type(ex.EnumerationType(enumeration=read.enumeration)), literals)
+        literals = [(literal.name, self._names.literal(literal)) for literal in error_reason.enumeration.literals]
+        return Reasons(self._type(ex.EnumerationType(enumeration=error_reason.enumeration)), literals)
 
     @property
     def interfaces(self) -> list[rosgraph.Interface]:
         """Types in use, each once, by package and name."""
         used: list[Subscription | Publisher | Client] = [*self.subscriptions, *self.publishers, *self.clients]
-        found = {(kind.package, kind.type, kind.kind.name): kind for kind in (end.interface for end in used)}
-        return [found[key] for key in sorted(found)]
+        by_name = {(kind.package, kind.type, kind.kind.name): kind for kind in (end.interface for end in used)}
+        return [by_name[key] for key in sorted(by_name)]
 
     # Types
 
@@ -387,7 +387,9 @@ class Node:
             self._names.conversion(conversion),
             self._type(ex.EnumerationType(enumeration=conversion.enumeration)),
             [
-                Rule(self._tested(rule, printer), self._names.literal(rule.literal), reads_elements(rule.condition))
+                ConversionRule(
+                    self._tested(rule, printer), self._names.literal(rule.literal), reads_elements(rule.condition)
+                )
                 for rule in conversion.rules
             ],
             self._names.literal(conversion.default),
@@ -416,7 +418,7 @@ class Node:
     def _reception(self, reception: rosgraph.Reception) -> EventHandler:
         values = self._values(reception)
         inputs = [self._input(assignment) for assignment in reception.inputs]
-        handler = self._handler(reception.event, inputs, reports.received(values, self._names))
+        handler = self._handler(reception.event, inputs, reports.received_parts(values, self._names))
         # An unreadable answer is an error, too. The reason selects the data for the log.
         is_error = reception.event.kind == sct.EventKind.error
         reads = is_error and (reads_reason(values) or handler.data is not None)
@@ -426,7 +428,7 @@ class Node:
         """Return all values that are computed from incoming data."""
         reactions = self._reactions.get(reception.event, ())
         assigned = (assignment.value for reaction in reactions for assignment in reaction.assignments)
-        return [*(given.value for given in reception.inputs), *assigned]
+        return [*(assignment.value for assignment in reception.inputs), *assigned]
 
     def _input(self, assignment: rosgraph.InputAssignment) -> Assignment:
         kind = assignment.input.type
@@ -509,8 +511,8 @@ class Node:
         printer = CppPrinter(self._names, node=node)
         if is_structured(kind) and isinstance(value, rosgraph.IfReadable):
             printer = CppPrinter(self._names, node=node, reader="element")
-            read = f"[&](ArrayReader& element) {{ return {printer(value.value)}; }}"
-            return Assignment(target, read, "store_if_readable")
+            lambda_text = f"[&](ArrayReader& element) {{ return {printer(value.value)}; }}"
+            return Assignment(target, lambda_text, "store_if_readable")
         text = printer.integer(value, kind) if isinstance(kind, ex.IntegerType) else printer(value)
         return Assignment(target, text, "store" if is_structured(kind) else "")
 
@@ -533,7 +535,7 @@ class Node:
             client.interface,
             request,
             self._reception(client.response),
-            reports.received([*self._values(client.response), *self._values(client.error)], self._names),
+            reports.received_parts([*self._values(client.response), *self._values(client.error)], self._names),
             self._reception(client.error),
             self._reception(action.feedback) if action else None,
             self._reception(action.canceled) if action else None,
@@ -543,7 +545,7 @@ class Node:
         )
 
     def _last(self, name: str) -> LastMessage:
-        sending = message_named(self._graph, name)
+        sending = find_message(self._graph, name)
         assert sending is not None
         event = self._names.c.enumerator(sending.event)
         publisher, message = next(
@@ -562,7 +564,8 @@ class Node:
             self._names.c.enumerator(sending.event),
             self._events[sending.event].remarks,
             [self._alternative(provided) for provided in sending.alternatives],
-            reads or any(_may_be_infinite(field) for given in sending.alternatives for field in given.fields),
+            reads
+            or any(_may_be_infinite(field) for alternative in sending.alternatives for field in alternative.fields),
             reads,
             [".".join(path) for path in paths_set(sending)] if sending.onChange else None,
             self._handler(sending.event) if sending.event in self._reactions else None,
@@ -572,10 +575,10 @@ class Node:
     def _alternative(self, provided: rosgraph.ProvidedData) -> Alternative:
         return Alternative(
             self._names.is_in(provided.location),
-            [self._written(field) for field in provided.fields],
+            [self._writing_of(field) for field in provided.fields],
         )
 
-    def _written(self, assignment: rosgraph.FieldAssignment) -> tuple[str, str, str]:
+    def _writing_of(self, assignment: rosgraph.FieldAssignment) -> tuple[str, str, str]:
         """Return the method that writes a field, the field's name, and its value."""
         name, value, kind = ".".join(assignment.path), assignment.value, assignment.type
         if holds_objects(kind) and isinstance(value, rosgraph.WireAccess):

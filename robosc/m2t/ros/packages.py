@@ -14,7 +14,7 @@ from robosc.m2t.ros import preconditions, typed_state
 from robosc.m2t.ros.gates import gates
 from robosc.m2t.ros.layer import LayerNode
 from robosc.m2t.ros.names import CppNames
-from robosc.m2t.ros.node import Node, Variable
+from robosc.m2t.ros.node import GeneratedNode, Variable
 from robosc.m2t.ros.rendering import fold, node_environment
 from robosc.m2t.ros.statuses import statuses
 from robosc.model import rosgraph
@@ -77,7 +77,7 @@ _STATUSES = rosgraph.Interface(package="diagnostic_msgs", type="DiagnosticArray"
 
 
 @dataclass(frozen=True)
-class Used:
+class UsedPackages:
     """Packages of the types that a node uses, and the types of its reports."""
 
     types: Set[str]
@@ -94,7 +94,9 @@ class Middleware(Protocol):
     #: Files that `--with-tests` adds to a controller: path to template.
     test_files: ClassVar[Mapping[str, str]]
 
-    def controller(self, node: Node, configuration: Configuration, used: Used, *, tests: bool) -> Values:
+    def controller(
+        self, node: GeneratedNode, configuration: Configuration, used: UsedPackages, *, tests: bool
+    ) -> Values:
         """Return template values that only a controller has."""
 
 
@@ -105,7 +107,7 @@ class RosTarget:
     kind: Literal["controller", "layer"]
     ros: Middleware
     #: Function that returns the template values that only a layer has.
-    layer: Callable[[LayerNode, Configuration, Used], Values] | None = None
+    layer: Callable[[LayerNode, Configuration, UsedPackages], Values] | None = None
 
     def preconditions(self, models: Models, configuration: Configuration) -> list[Diagnostic]:
         """Return errors that make such a node impossible, and warnings on settings without effect."""
@@ -126,9 +128,12 @@ class RosTarget:
         assert graph is not None
         executed = models.engine
         if self.kind == "layer":
-            node, name = Node(graph, executed, on_blocked=configuration.on_blocked), configuration.layer_name(graph)
+            node, name = (
+                GeneratedNode(graph, executed, on_blocked=configuration.on_blocked),
+                configuration.layer_name(graph),
+            )
         else:
-            node = Node(graph, executed, configuration.on_shutdown, configuration.on_withheld)
+            node = GeneratedNode(graph, executed, configuration.on_shutdown, configuration.on_withheld)
             name = configuration.package_name(graph)
         return self._files(graph, executed, name, configuration, node, tests, into)
 
@@ -164,15 +169,15 @@ class RosTarget:
         executed: EngineModel,
         name: str,
         configuration: Configuration,
-        node: Node,
+        node: GeneratedNode,
         tests: TraceTest | None,
         into: str | None,
     ) -> dict[str, str]:
         kind, ros = self.kind, self.ros
         commands = gates(graph, node, executed) if configuration.diagnostics_ms or kind == "layer" else {}
         layer = LayerNode(graph, node, commands.values(), executed) if kind == "layer" else None
-        told = statuses(graph, node, commands) if configuration.diagnostics_ms else []
-        included = self._included(node, layer, told, configuration)
+        reported_statuses = statuses(graph, node, commands) if configuration.diagnostics_ms else []
+        included = self._included(node, layer, reported_statuses, configuration)
         source, definition = f"src/{name}_node.cpp", f"include/{name}/definition.hpp"
         # Users rarely set a layer's parameters, except for the model's own.
         has_file = kind == "controller" or bool(node.parameters)
@@ -191,11 +196,11 @@ class RosTarget:
         )
         reports = [
             *([_TEXT] if texts_told else []),
-            *([_STATUSES] if told else []),
+            *([_STATUSES] if reported_statuses else []),
             *([kind_of_state] if configuration.typed_state else []),
         ]
         types = {interface.package for interface in [*node.interfaces, *reports]}
-        used = Used({package for package in types if package != into}, reports)
+        used = UsedPackages({package for package in types if package != into}, reports)
         own = [definition.removeprefix("include/")] if configuration.publish_state_information else []
         declared = (layer_parameters if layer else controller_parameters)(graph, configuration, "")
         text = f"The {'supervisory controller' if kind == 'controller' else 'supervisory layer'} of {graph.name}."
@@ -222,10 +227,10 @@ class RosTarget:
                 if kind == "controller" or parameter.name != "event_log" or configuration.write_events_to_log
             ),
             "publishes_state": configuration.publish_state_information,
-            "statuses": told,
+            "statuses": reported_statuses,
             "typed_fields": typed,
             "typed": kind_of_state if configuration.typed_state else None,
-            "remembers": bool(node.may_withhold and (told or node.instead)),
+            "remembers": bool(node.may_withhold and (reported_statuses or node.instead)),
             "gates": list(commands.values()),
             "writes_log": configuration.write_events_to_log,
             "definition": definition_text(graph),
@@ -244,7 +249,7 @@ class RosTarget:
         templates = node_environment(f"robosc.m2t.ros.ros{ros.version}")
         texts = {path: templates.get_template(template).render(values) for path, template in files.items()}
         texts[source] = fold(texts[source])
-        texts |= {f"include/{header}.hpp": text for header, text in shipped(included).items()}
+        texts |= {f"include/{header}.hpp": text for header, text in shipped_headers(included).items()}
         supervisor = engine.generate(executed, configuration.control_loop)
         # The header of the engine is public in a place where other code finds it.
         places = {".h": f"include/{name}" if into else "src", ".c": "src"}
@@ -252,7 +257,11 @@ class RosTarget:
         return texts | ({f"test/{path}": text for path, text in tests.files.items()} if tests else {})
 
     def _included(
-        self, node: Node, layer: LayerNode | None, told: Sequence[Status], configuration: Configuration
+        self,
+        node: GeneratedNode,
+        layer: LayerNode | None,
+        reported_statuses: Sequence[Status],
+        configuration: Configuration,
     ) -> list[str]:
         """Return the headers in `include` that the node includes, without suffix."""
         if self.kind == "controller":
@@ -268,14 +277,14 @@ class RosTarget:
             "awaits": _awaited(node, configuration),
             "composes": composes,
             "defaults": defaults,
-            "gates": (layer and layer.gates) or any(status.commands for status in told),
+            "gates": (layer and layer.gates) or any(status.commands for status in reported_statuses),
             "hands_on": node.hands_on,
             "managed": configuration.lifecycle,
             "quaternions": (composes and defaults) or _turned(node),
-            "reports": configuration.publish_state_information or told or (layer and layer.gates),
+            "reports": configuration.publish_state_information or reported_statuses or (layer and layer.gates),
             "services": node.services,
             "state": configuration.publish_state_information,
-            "statuses": told,
+            "statuses": reported_statuses,
             "subscriptions": node.subscriptions,
             "timed": node.at,
             "topics": node.subscriptions or node.publishers,
@@ -285,7 +294,7 @@ class RosTarget:
         return [name.format(ros=self.ros.version) for name, needed in _HEADERS.items() if needed <= features]
 
 
-def _turned(node: Node) -> list[tuple[Variable, str]]:
+def _turned(node: GeneratedNode) -> list[tuple[Variable, str]]:
     """Return the node's object variables that may hold quaternions, each with its component."""
     return [
         (variable, component)
@@ -295,7 +304,7 @@ def _turned(node: Node) -> list[tuple[Variable, str]]:
     ]
 
 
-def _awaited(node: Node, configuration: Configuration) -> list[str]:
+def _awaited(node: GeneratedNode, configuration: Configuration) -> list[str]:
     """Return the topics that commands wait for."""
     names = {topic.removeprefix("/") for topic in configuration.wait_for}
     return [topic.topic for topic in node.subscriptions if topic.topic.removeprefix("/") in names]
@@ -316,23 +325,23 @@ def _player(name: str, into: str | None) -> str:
 
 def _groups(declared: Iterable[Parameter]) -> dict[str, dict[str, Parameter]]:
     """Group parameters by the part of their names before the last point, "" first."""
-    found: dict[str, dict[str, Parameter]] = {"": {}}
+    groups: dict[str, dict[str, Parameter]] = {"": {}}
     for parameter in declared:
         group, _, name = parameter.name.rpartition(".")
-        found.setdefault(group, {})[name] = parameter
-    return found
+        groups.setdefault(group, {})[name] = parameter
+    return groups
 
 
-def shipped(headers: Iterable[str]) -> dict[str, str]:
+def shipped_headers(headers: Iterable[str]) -> dict[str, str]:
     """Return headers in `include` by name, such as `robosc/json`, with all that they include: text by name."""
-    found: dict[str, str] = {}
+    texts: dict[str, str] = {}
     waiting = list(headers)
     while waiting:
         name = waiting.pop().removesuffix(".hpp")
-        if name not in found:
-            found[name] = (locate("m2t/ros/include") / f"{name}.hpp").read_text(encoding="utf-8")
-            waiting += _INCLUDED.findall(found[name])
-    return dict(sorted(found.items()))
+        if name not in texts:
+            texts[name] = (locate("m2t/ros/include") / f"{name}.hpp").read_text(encoding="utf-8")
+            waiting += _INCLUDED.findall(texts[name])
+    return dict(sorted(texts.items()))
 
 
 def has_defaults(interface: rosgraph.Interface) -> bool:
@@ -358,7 +367,7 @@ def launch_path(configuration: Configuration) -> str:
     return launch.file if "/" in launch.file else f"launch/{launch.file}"
 
 
-def _no_stop(node: Node, configuration: Configuration) -> list[tuple[str, str]]:
+def _no_stop(node: GeneratedNode, configuration: Configuration) -> list[tuple[str, str]]:
     """Return the node's warnings at its start that nothing stops the robot, each with its condition."""
     if node.shutdown or not node.publishers:
         return []

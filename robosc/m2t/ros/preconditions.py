@@ -15,7 +15,7 @@ from robosc.model import expression as ex
 from robosc.model import rosgraph
 from robosc.model.places import place
 from robosc.model.reflection import tree
-from robosc.model.semantics.messages import holds_objects, message_named, parts_of, path_of
+from robosc.model.semantics.messages import find_message, holds_objects, parts_of, path_of
 from robosc.model.semantics.typing import DOUBLE, ArrayType, declared_type, infer
 
 if TYPE_CHECKING:
@@ -58,16 +58,16 @@ def preconditions(models: Models, configuration: Configuration, kind: str, ros: 
     if graph is None:
         message = "this model has no ROS graph: generate from the .rscd or the .rosgraph.xmi"
         return [Diagnostic(models.sct.name, START, Severity.ERROR, RULE, message)]
-    found = [*engine_preconditions(models.sct), *_names(graph), *_types(graph)]
-    found += _parameters(graph, configuration, kind, ros)
+    findings = [*engine_preconditions(models.sct), *_names(graph), *_types(graph)]
+    findings += _parameters(graph, configuration, kind, ros)
     if configuration.typed_state and not configuration.publish_state_information:
         hint = 'leave out "publishStateInformation": false'
-        found.append(configuration.error(("typedState",), '"typedState" needs "publishStateInformation"', hint))
+        findings.append(configuration.error(("typedState",), '"typedState" needs "publishStateInformation"', hint))
     if kind == "controller":
         name = configuration.package_name(graph)
-        return [*found, *_package(graph, configuration, name), *_settings(graph, configuration)]
+        return [*findings, *_package(graph, configuration, name), *_settings(graph, configuration)]
     return [
-        *found,
+        *findings,
         *_package(graph, configuration, configuration.layer_name(graph)),
         *_shared_topics(graph),
         *_unsendable(graph, configuration, "onBlocked", configuration.on_blocked),
@@ -182,7 +182,7 @@ def _outside(
     """Return errors on names in a setting that are no sent messages, and warnings on requirements that it overrides."""
     yield from _unsendable(graph, configuration, setting, names)
     for place_of_name, name in enumerate(names):
-        sending = message_named(graph, name)
+        sending = find_message(graph, name)
         if sending is None:
             continue
         for requirement in graph.model.requirements:
@@ -196,7 +196,7 @@ def _unsendable(
 ) -> Iterator[Diagnostic]:
     """Return errors on names in a setting that are no messages to the robot."""
     for place_of_name, name in enumerate(names):
-        if message_named(graph, name) is None:
+        if find_message(graph, name) is None:
             sent = [sending.name for publisher in graph.publishers for sending in publisher.sendings]
             hint = f"messages to the robot: {', '.join(sent)}" if sent else None
             message = f'"{setting}": {name} is not a message that the node sends'
@@ -242,17 +242,17 @@ def _nothing_safe(graph: rosgraph.RosGraph, configuration: Configuration) -> Ite
         outside = _from_outside(graph)
         for sending in (sending for publisher in graph.publishers for sending in publisher.sendings):
             fields = [field for provided in sending.alternatives for field in provided.fields]
-            found = next((field for field in fields if _may_be_withheld(field, outside)), None)
-            if found is not None:
-                what = "is not a" if infer(found.value) == DOUBLE else "has a value that is not a"
+            withheld = next((field for field in fields if _may_be_withheld(field, outside)), None)
+            if withheld is not None:
+                what = "is not a" if infer(withheld.value) == DOUBLE else "has a value that is not a"
                 message = (
-                    f"{sending.name} is not sent where its {'.'.join(found.path) or 'data'} {what} finite number, and"
+                    f"{sending.name} is not sent if its {'.'.join(withheld.path) or 'data'} {what} finite number, and"
                     " no other message is: the robot continues with its last command"
                 )
                 hint = (
                     'name the message to send then in controller-config.json, as in "onWithheld": ["halt"]; or write []'
                 )
-                yield replace(_error(found, message, hint), severity=Severity.WARNING)
+                yield replace(_error(withheld, message, hint), severity=Severity.WARNING)
 
 
 def _may_be_withheld(field: rosgraph.FieldAssignment, outside: set[rosgraph.NodeVariable]) -> bool:
@@ -271,13 +271,13 @@ def _from_outside(graph: rosgraph.RosGraph) -> set[rosgraph.NodeVariable]:
         for assignment in reaction.assignments
         if infer(assignment.value) == DOUBLE
     ]
-    found: set[rosgraph.NodeVariable] = set()
+    variables: set[rosgraph.NodeVariable] = set()
     more = True
     while more:
-        reached = {assignment.variable for assignment in assignments if _reads(assignment.value, found)}
-        more = not reached <= found
-        found |= reached
-    return found
+        reached = {assignment.variable for assignment in assignments if _reads(assignment.value, variables)}
+        more = not reached <= variables
+        variables |= reached
+    return variables
 
 
 def _reads(value: ex.Expression, outside: set[rosgraph.NodeVariable]) -> bool:
@@ -292,11 +292,11 @@ def _reads(value: ex.Expression, outside: set[rosgraph.NodeVariable]) -> bool:
 def _shared_topics(graph: rosgraph.RosGraph) -> Iterator[Diagnostic]:
     """Return errors on topics with several messages: a layer cannot determine which one it passes."""
     named: dict[str, str] = {}
-    found: list[tuple[str, Sequence[rosgraph.Reception | rosgraph.Sending]]] = [
+    by_topic: list[tuple[str, Sequence[rosgraph.Reception | rosgraph.Sending]]] = [
         *((subscription.topic, subscription.receptions) for subscription in graph.subscriptions),
         *((publisher.topic, publisher.sendings) for publisher in graph.publishers),
     ]
-    for topic, message in ((topic, message) for topic, messages in found for message in messages):
+    for topic, message in ((topic, message) for topic, messages in by_topic for message in messages):
         first = named.get(topic.removeprefix("/"))
         if first is None:
             named[topic.removeprefix("/")] = message.name

@@ -65,7 +65,7 @@ def _folded(line: str, width: int) -> str:
     if end <= width or line.startswith(("//", "#"), indent):
         return line
     places = _places(line, indent, end)
-    made: list[str] = []
+    parts: list[str] = []
     # Start of the remaining text, and its column after the break.
     start = column = 0
     while end - start + column > width:
@@ -74,23 +74,23 @@ def _folded(line: str, width: int) -> str:
         if first == last:
             break
         at = max(places[first:last])[1]
-        made += [line[start:at].rstrip(), "\n", " " * (indent + 4)]
+        parts += [line[start:at].rstrip(), "\n", " " * (indent + 4)]
         start, column = at, indent + 4
         while line[start] == " ":
             start += 1
-    return "".join([*made, line[start:]])
+    return "".join([*parts, line[start:]])
 
 
 def _places(line: str, start: int, end: int) -> list[tuple[int, int]]:
     """Return the places where a line may break, in order: the negated bracket depth, and the position."""
     depth = 0
-    found = []
+    places = []
     for token in _TOKEN.finditer(line, start, end):
         if token[0].strip():
             depth += (token[0] in _OPENING) - (token[0] in _CLOSING)
         else:
-            found.append((-depth, token.start()))
-    return found
+            places.append((-depth, token.start()))
+    return places
 
 
 _position = itemgetter(1)

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robosc.m2t.c.comments import string_literal
-from robosc.m2t.ros.expressions import CppPrinter, converted
+from robosc.m2t.ros.expressions import CppPrinter, convert
 from robosc.model import expression as ex
 from robosc.model import rosgraph, sct
-from robosc.model.semantics.messages import Read, access_to, reads_elements, shown
+from robosc.model.semantics.messages import MessageRead, access_to, logged_data, reads_elements
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -50,24 +50,24 @@ class Component:
     variables: list[tuple[str, str]]
 
 
-def received(values: Sequence[ex.Expression], names: CppNames) -> EventData | None:
+def received_parts(values: Sequence[ex.Expression], names: CppNames) -> EventData | None:
     """Return the parts of a message that the node reads, in the message's structure. Basic data is the value itself."""
     printer = CppPrinter(names, reader="element")
-    found = shown(values)
-    if not found:
+    parts = logged_data(values)
+    if not parts:
         return None
-    texts = {path: _value(path, part, printer, names) for path, part in found.items()}
+    texts = {path: _value(path, part, printer, names) for path, part in parts.items()}
     if list(texts) == [("data",)]:
         texts = {(): texts["data",]}
-    reading = {path for path, part in found.items() if _reads_elements(path, part)}
+    reading = {path for path, part in parts.items() if _reads_elements(path, part)}
     if not reading:
         return EventData(_nested(texts), [])
     return EventData("", [Member(_dotted(path), texts[path], path in reading) for path in _grouped(texts)])
 
 
-def _value(path: Path, part: Read | Shown, printer: CppPrinter, names: CppNames) -> str:
+def _value(path: Path, part: MessageRead | Shown, printer: CppPrinter, names: CppNames) -> str:
     """Return the reported value at the end of a path."""
-    if isinstance(part, Read):
+    if isinstance(part, MessageRead):
         kind = ex.EnumerationType(enumeration=part.conversion.enumeration) if part.conversion else part.type
         text = printer(part.reference)
         return _json(text, kind, names) if part.is_value else f"(static_cast<void>({text}), Json::object())"
@@ -78,21 +78,21 @@ def _list(array: str, parts: Shown, names: CppNames, depth: int = 1) -> str:
     """Return the reported elements of an array."""
     element = f"element{depth}"
 
-    def text(path: Path, part: Read | Shown) -> str:
+    def text(path: Path, part: MessageRead | Shown) -> str:
         place = ".".join((element, *path))
-        if not isinstance(part, Read):
+        if not isinstance(part, MessageRead):
             return _list(place, part, names, depth + 1)
         if part.conversion is not None:
             kind = ex.EnumerationType(enumeration=part.conversion.enumeration)
             return _json(f"{names.conversion(part.conversion)}({place})", kind, names)
-        return converted(place, part.type) if part.type is not None else "Json::object()"
+        return convert(place, part.type) if part.type is not None else "Json::object()"
 
     value = _nested({path: text(path, part) for path, part in parts.items()})
     return f"json_list({array}, []([[maybe_unused]] const auto& {element}) {{ return {value}; }})"
 
 
-def _reads_elements(path: Path, part: Read | Shown) -> bool:
-    return reads_elements(part.reference) if isinstance(part, Read) else any(map(str.isdigit, path))
+def _reads_elements(path: Path, part: MessageRead | Shown) -> bool:
+    return reads_elements(part.reference) if isinstance(part, MessageRead) else any(map(str.isdigit, path))
 
 
 def component(plant: sct.Plant, variables: Sequence[rosgraph.NodeVariable], names: CppNames) -> Component:
@@ -138,8 +138,8 @@ def _grouped(paths: Iterable[Path]) -> list[Path]:
         heads.setdefault(path[:1], []).append(path)
     return [
         head + rest
-        for head, found in heads.items()
-        for rest in ([()] if found == [head] else _grouped(path[1:] for path in found))
+        for head, group in heads.items()
+        for rest in ([()] if group == [head] else _grouped(path[1:] for path in group))
     ]
 
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from robosc.m2t.ros.gates import Gate
-    from robosc.m2t.ros.node import Client, Node, Subscription
+    from robosc.m2t.ros.node import Client, GeneratedNode, Subscription
     from robosc.model import rosgraph
 
 
@@ -54,7 +54,7 @@ class Status:
         return names if version == 1 else [*names, *(client.name for client in self.clients)]
 
 
-def statuses(graph: rosgraph.RosGraph, node: Node, gates: Mapping[rosgraph.Sending, Gate]) -> list[Status]:
+def statuses(graph: rosgraph.RosGraph, node: GeneratedNode, gates: Mapping[rosgraph.Sending, Gate]) -> list[Status]:
     """Return the status of each component of a graph whose commands have these gates."""
     heard = dict(zip(graph.subscriptions, node.subscriptions, strict=True))
     called = dict(zip([*graph.serviceClients, *graph.actionClients], node.clients, strict=True))

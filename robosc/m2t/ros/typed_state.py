@@ -64,7 +64,7 @@ class _Maker:
                 continue
             name = self._fields.fresh(snake_case(parts.name))
             yield self._state(parts.plant, f"The state of {parts.name}.", name)
-            variables: list[sct.DiscreteVariable | rosgraph.NodeVariable] = [*parts.plant.variables, *parts.kept]
+            variables: list[sct.DiscreteVariable | rosgraph.NodeVariable] = [*parts.plant.variables, *parts.stored]
             for variable in variables:
                 own = self._fields.fresh(f"{name}_{snake_case(variable.name)}")
                 yield self._variable(variable, f"{parts.name}.{variable.name}", own)
@@ -104,13 +104,13 @@ class _Scope:
 
     def fresh(self, name: str) -> str:
         """Return the name, or a similar one that is free."""
-        ascii_only = re.sub(r"[^a-z0-9_]", lambda found: f"u{ord(found[0]):04x}", name)
+        ascii_only = re.sub(r"[^a-z0-9_]", lambda match: f"u{ord(match[0]):04x}", name)
         word = re.sub("_+", "_", ascii_only).strip("_")
         word = word if word[:1].isalpha() else f"x{word}"
-        found = next(
+        match = next(
             candidate
             for candidate in chain([word], (f"{word}_{number}" for number in count(2)))
             if candidate not in self._taken
         )
-        self._taken.add(found)
-        return found
+        self._taken.add(match)
+        return match

@@ -44,7 +44,7 @@ FOREIGN = {"/": 6, "in": 4, "sub": 4}
 _LOGICAL = ("=>", "<=>", "or", "and")
 
 
-def shown(kind: Type) -> str:
+def format_type(kind: Type) -> str:
     """Return a type in CIF's notation."""
     match kind:
         case range():
@@ -61,7 +61,7 @@ def compatible(left: Type, right: Type) -> bool:
     return isinstance(left, range) and isinstance(right, range) if isinstance(left, range) else left == right
 
 
-def combined(operator: str, left: Type, right: Type) -> Type:
+def combine_types(operator: str, left: Type, right: Type) -> Type:
     """Return the type of a binary expression.
 
     Raises TypeError, with the cause, if the operator does not apply to the operands.
@@ -73,27 +73,27 @@ def combined(operator: str, left: Type, right: Type) -> Type:
     else:
         fits = isinstance(left, range) and isinstance(right, range)
     if not fits:
-        raise TypeError(f"`{operator}` does not apply to {shown(left)} and {shown(right)}")
+        raise TypeError(f"`{operator}` does not apply to {format_type(left)} and {format_type(right)}")
     if not isinstance(left, range) or not isinstance(right, range) or OPERATORS[operator][0] < 5:
         return BOOLEAN
     if operator in ("div", "mod"):
         return _divided(operator, left, right)
     low, high = right.start, right.stop - 1
     if operator == "+":
-        made = range(left.start + low, left.stop + high)
+        values = range(left.start + low, left.stop + high)
     elif operator == "-":
-        made = range(left.start - high, left.stop - low)
+        values = range(left.start - high, left.stop - low)
     else:
         corners = [left_end * right_end for left_end in (left.start, left.stop - 1) for right_end in (low, high)]
-        made = range(min(corners), max(corners) + 1)
-    return bounded(operator, made)
+        values = range(min(corners), max(corners) + 1)
+    return value_range(operator, values)
 
 
-def bounded(operator: str, made: range) -> range:
+def value_range(operator: str, values: range) -> range:
     """Return the range of an operation's values. Raises TypeError if it exceeds CIF's integers."""
-    if made.start < -LARGEST - 1 or made.stop - 1 > LARGEST:
-        raise TypeError(f"`{operator}` could overflow: its values are {made.start} to {made.stop - 1}")
-    return made
+    if values.start < -LARGEST - 1 or values.stop - 1 > LARGEST:
+        raise TypeError(f"`{operator}` could overflow: its values are {values.start} to {values.stop - 1}")
+    return values
 
 
 def _divided(operator: str, left: range, right: range) -> range:
@@ -105,10 +105,10 @@ def _divided(operator: str, left: range, right: range) -> range:
     return range(left.start // divisor, last // divisor + 1) if operator == "div" else range(min(last, divisor - 1) + 1)
 
 
-def joined(left: Type, right: Type) -> Type:
+def join_types(left: Type, right: Type) -> Type:
     """Return the type that holds the values of both types. Raises TypeError if they are not compatible."""
     if not compatible(left, right):
-        raise TypeError(f"the alternatives are {shown(left)} and {shown(right)}")
+        raise TypeError(f"the alternatives are {format_type(left)} and {format_type(right)}")
     if isinstance(left, range) and isinstance(right, range):
         return range(min(left.start, right.start), max(left.stop, right.stop))
     return left

@@ -121,7 +121,7 @@ def event_of(reference: robosc.CommunicationReference | None, name: robosc.Resul
     return event(reference.communicationType if reference else None, name)
 
 
-def meant(reference: robosc.EventReference) -> PortEvent | None:
+def port_event_of(reference: robosc.EventReference) -> PortEvent | None:
     """Return the event that a requirement names.
 
     Without a word for the event, it is the request, or the arrival of an outgoing message.
@@ -133,12 +133,12 @@ def meant(reference: robosc.EventReference) -> PortEvent | None:
     return next(iter(events(communication)), None)
 
 
-def sent(communication: robosc.CommunicationType | None) -> PortEvent | None:
+def sending_event(communication: robosc.CommunicationType | None) -> PortEvent | None:
     """Return the event with which the controller sends data. None if it sends none."""
     return next((row for row in events(communication) if row.is_sent), None)
 
 
-def carried(communication: robosc.CommunicationType) -> list[tuple[PortEvent, robosc.DataType]]:
+def carrying_events(communication: robosc.CommunicationType) -> list[tuple[PortEvent, robosc.DataType]]:
     """Return the events that carry data, in the order of the text, each with its declared type.
 
     Several ends of a goal carry its result. Only the response is included.
@@ -155,7 +155,7 @@ def data_type(communication: robosc.CommunicationType | None, row: PortEvent | N
 
 def sent_type(communication: robosc.CommunicationType | None) -> robosc.DataType | None:
     """Return the declared type of the data that the controller sends. None if it sends none."""
-    return data_type(communication, sent(communication))
+    return data_type(communication, sending_event(communication))
 
 
 def section_of(declared: robosc.DataType) -> Section:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeVar
 
 from robosc.model import rosgraph, sct
-from robosc.model.semantics.definition import reported
+from robosc.model.semantics.definition import reported_variables
 from robosc.model.semantics.roles import plant_of
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ class Parts:
 
     name: str
     plant: sct.Plant | None
-    kept: Sequence[rosgraph.NodeVariable]
+    stored: Sequence[rosgraph.NodeVariable]
     #: Messages, requests of services, goals of actions.
     commands: Sequence[rosgraph.Sending]
     topics: Sequence[rosgraph.Subscription]
@@ -48,12 +48,12 @@ def components(graph: rosgraph.RosGraph) -> list[Parts]:
     called = _grouped((_owner(client.request.event), client) for client in clients)
     for name in [*topics, *commands]:
         plants.setdefault(name, None)
-    kept = reported(graph)
+    stored = reported_variables(graph)
     return [
         Parts(
             name,
             plant,
-            [] if plant is None else kept.get(plant.origin, []),
+            [] if plant is None else stored.get(plant.origin, []),
             commands.get(name, []),
             topics.get(name, []),
             called.get(name, []),
@@ -69,10 +69,10 @@ def request(sending: rosgraph.Sending) -> str:
 
 def _grouped(owned: Iterable[tuple[str, _Element]]) -> dict[str, list[_Element]]:
     """Group elements by their owner. Each group keeps the order of the elements."""
-    found: dict[str, list[_Element]] = {}
+    groups: dict[str, list[_Element]] = {}
     for owner, element in owned:
-        found.setdefault(owner, []).append(element)
-    return found
+        groups.setdefault(owner, []).append(element)
+    return groups
 
 
 def _owner(event: sct.Event) -> str:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, TypeGuard
 
 from robosc.model import expression as ex
 from robosc.model import robosc
-from robosc.model.semantics.communication import data_type, event_of, meant
-from robosc.model.semantics.inputs import Computed, inputs_in, may_be_missing, readable
+from robosc.model.semantics.communication import data_type, event_of, port_event_of
+from robosc.model.semantics.inputs import ComputedValue, inputs_in, may_be_missing, readable
 from robosc.model.semantics.typing import declared_type
 from robosc.model.semantics.walks import parts
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from robosc.model.semantics.communication import PortEvent
-    from robosc.model.semantics.inputs import Told
+    from robosc.model.semantics.inputs import InputSource
     from robosc.model.semantics.instances import Instance, Instances, InstanceVariable
     from robosc.model.semantics.typing import Type
 
@@ -26,7 +26,7 @@ LARGEST_TABLE = 1 << 16
 
 
 @dataclass(frozen=True)
-class Assigned:
+class AssignmentPlace:
     """An assignment in its context: the instance, the transition, and the variable (None if it is unresolved).
 
     `value` is the expanded expression that it assigns.
@@ -40,7 +40,7 @@ class Assigned:
 
 
 @dataclass(frozen=True)
-class Reason:
+class NeedReason:
     """The place that makes a variable or an input necessary: the access, its instance (None: the robot), its use.
 
     `variable` is the variable that is computed from the access. It is None if the supervisor evaluates the expression.
@@ -52,7 +52,7 @@ class Reason:
 
 
 @dataclass(frozen=True)
-class Reading:
+class InputRead:
     """A part of an expression that reads the data of an event, with its input; None if it cannot be an input.
 
     `is_readable`: the entry stands for no part. Its input is whether the whole expression can be computed.
@@ -60,8 +60,8 @@ class Reading:
 
     whole: ex.Expression
     part: ex.Expression
-    told: Told | None
-    reason: Reason
+    source: InputSource | None
+    reason: NeedReason
     value: Type
     is_readable: bool = False
 
@@ -73,23 +73,23 @@ class ConeOfInfluence:
     `readings` are the reads of data, `computations` the assignments that the supervisor performs.
     """
 
-    variables: dict[InstanceVariable, Reason]
-    readings: list[Reading]
-    computations: list[Assigned]
+    variables: dict[InstanceVariable, NeedReason]
+    readings: list[InputRead]
+    computations: list[AssignmentPlace]
 
     @property
-    def data(self) -> dict[Told, Reading]:
+    def data(self) -> dict[InputSource, InputRead]:
         """Inputs of the supervisor, each with its first reading."""
-        found: dict[Told, Reading] = {}
+        first_readings: dict[InputSource, InputRead] = {}
         for reading in self.readings:
-            if reading.told is not None:
-                found.setdefault(reading.told, reading)
-        return found
+            if reading.source is not None:
+                first_readings.setdefault(reading.source, reading)
+        return first_readings
 
 
 def cone_of_influence(instances: Instances) -> ConeOfInfluence:
     """Return the variables and data that guards, requirements and conditions of provided data depend on."""
-    assignments: dict[InstanceVariable, list[Assigned]] = {}
+    assignments: dict[InstanceVariable, list[AssignmentPlace]] = {}
     for assigned in all_assignments(instances):
         if assigned.variable is not None:
             assignments.setdefault(assigned.variable, []).append(assigned)
@@ -100,7 +100,7 @@ def cone_of_influence(instances: Instances) -> ConeOfInfluence:
         for access in accesses(expression):
             variable = instances.variable(access, within)
             if variable is not None and variable not in result.variables:
-                result.variables[variable] = Reason(access, within, computed)
+                result.variables[variable] = NeedReason(access, within, computed)
                 queue.append(variable)
 
     for condition in conditions(instances):
@@ -117,7 +117,7 @@ def cone_of_influence(instances: Instances) -> ConeOfInfluence:
 
 
 @dataclass(frozen=True)
-class Evaluated:
+class EvaluatedExpression:
     """An expanded expression that the supervisor itself evaluates, with its place.
 
     `within` is the instance whose text contains it, or None for the robot. `transition` is the transition that it
@@ -134,19 +134,19 @@ def guard_of(transition: robosc.Transition) -> ex.Expression | None:
     return transition.guard if isinstance(transition, robosc.GuardedTransition) else None
 
 
-def conditions(instances: Instances) -> Iterator[Evaluated]:
+def conditions(instances: Instances) -> Iterator[EvaluatedExpression]:
     """Iterate over all guards and conditions."""
     for instance in instances:
         for transition, _ in instance.transitions:
             guard = guard_of(transition)
             if guard is not None:
-                yield Evaluated(instances.expanded(guard, instance), instance, transition)
-    for condition, within, following in _stated(instances):
+                yield EvaluatedExpression(instances.expanded(guard, instance), instance, transition)
+    for condition, within, following in _statement_needs(instances):
         if condition is not None:
-            yield Evaluated(instances.expanded(condition, within), within, following)
+            yield EvaluatedExpression(instances.expanded(condition, within), within, following)
 
 
-def _stated(
+def _statement_needs(
     instances: Instances,
 ) -> Iterator[tuple[ex.Expression | None, Instance | None, robosc.RequirementTransition | None]]:
     """Iterate over the conditions of requirements, properties and statements that provide data."""
@@ -168,21 +168,21 @@ def _remembered(instances: Instances) -> Iterator[tuple[ex.Expression | None, In
             yield claimed.element.premise, claimed.within
     for required in instances.statements(robosc.CommunicationRequirement):
         yield required.element.condition, required.within
-    for provided in (statement for port in instances.ports() for statement in instances.provided(port)):
+    for provided in (statement for port in instances.ports() for statement in instances.provide_statements(port)):
         yield provided.element.condition, provided.within
     for invariant in instances.statements(robosc.StateInvariant):
         yield invariant.element.condition, invariant.within
 
 
-def all_assignments(instances: Instances) -> Iterator[Assigned]:
+def all_assignments(instances: Instances) -> Iterator[AssignmentPlace]:
     """Iterate over the assignments of all instances, in the order of the text."""
     for instance in instances:
         for transition, _ in instance.transitions:
             for assignment in transition.assignments:
                 variable = instances.variable(assignment.item, instance) if assignment.item else None
-                given = assignment.value
-                value = None if given is None else instances.expanded(given, instance)
-                yield Assigned(instance, transition, assignment, variable, value)
+                expression = assignment.value
+                value = None if expression is None else instances.expanded(expression, instance)
+                yield AssignmentPlace(instance, transition, assignment, variable, value)
 
 
 def accesses(expression: ex.Expression | None) -> Iterator[robosc.Access]:
@@ -196,7 +196,7 @@ def read_data(
     within: Instance | None,
     transition: robosc.Transition | robosc.RequirementTransition | None,
     variable: InstanceVariable | None = None,
-) -> Iterator[Reading]:
+) -> Iterator[InputRead]:
     """Iterate over the reads of event data in an expanded expression of a transition.
 
     `variable` is the variable that the expression is assigned to.
@@ -209,10 +209,10 @@ def read_data(
     value = declared_type(data_type(port.communication, event))
     for part, carried in inputs_in(expression, port, event, bounds, is_condition=variable is None):
         access = next(filter(_reads_event, parts(part)))
-        reason = Reason(access, within, variable)
-        yield Reading(expression, part, carried, reason, value)
-        if variable is not None and isinstance(carried, Computed) and may_be_missing(carried):
-            yield Reading(expression, part, readable(carried), reason, value, is_readable=True)
+        reason = NeedReason(access, within, variable)
+        yield InputRead(expression, part, carried, reason, value)
+        if variable is not None and isinstance(carried, ComputedValue) and may_be_missing(carried):
+            yield InputRead(expression, part, readable(carried), reason, value, is_readable=True)
 
 
 def _event(
@@ -223,7 +223,7 @@ def _event(
         case robosc.ResultTransition():
             return transition.communicationType, event_of(transition.communicationType, transition.resultType)
         case robosc.RequirementTransition() if transition.event is not None:
-            return transition.event.communicationType, meant(transition.event)
+            return transition.event.communicationType, port_event_of(transition.event)
     return None, None
 
 

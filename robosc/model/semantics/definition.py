@@ -28,12 +28,12 @@ def definition(graph: rosgraph.RosGraph) -> dict[str, Any]:
     A component has states, variables and transitions.
     """
     plants = graph.model.plants
-    kept = reported(graph)
+    stored = reported_variables(graph)
     assigning = {(reaction.event, location) for reaction in graph.reactions for location in reaction.locations}
     return {
         "robot": graph.name,
         "components": [
-            _component(plant, kept.get(plant.origin, ()), assigning)
+            _component(plant, stored.get(plant.origin, ()), assigning)
             for plant in plants
             if plant.kind == sct.PlantKind.behaviour
         ],
@@ -68,13 +68,13 @@ def _lines(value: Any) -> str:
     return "[\n" + ",\n".join(f"  {json.dumps(element)}" for element in value) + "]"
 
 
-def reported(graph: rosgraph.RosGraph) -> dict[str | None, list[rosgraph.NodeVariable]]:
+def reported_variables(graph: rosgraph.RosGraph) -> dict[str | None, list[rosgraph.NodeVariable]]:
     """Return the variables that reports show, by component. Arrays and objects are excluded: they may be large."""
-    found: dict[str | None, list[rosgraph.NodeVariable]] = {}
+    by_component: dict[str | None, list[rosgraph.NodeVariable]] = {}
     for variable in graph.variables:
         if not is_structured(variable.type):
-            found.setdefault(variable.component, []).append(variable)
-    return found
+            by_component.setdefault(variable.component, []).append(variable)
+    return by_component
 
 
 def _component(

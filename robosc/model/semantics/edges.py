@@ -33,8 +33,8 @@ def origin(edge: sct.Edge) -> sct.Location | None:
 
 def edges_by_event(plants: Iterable[sct.Plant]) -> dict[sct.Event, dict[sct.Plant, list[sct.Edge]]]:
     """Return the edges of each event by plant. Only plants with an edge for an event take part in it."""
-    found: dict[sct.Event, dict[sct.Plant, list[sct.Edge]]] = {}
+    by_event: dict[sct.Event, dict[sct.Plant, list[sct.Edge]]] = {}
     for plant in plants:
         for edge in edges_of(plant):
-            found.setdefault(edge.event, {}).setdefault(plant, []).append(edge)
-    return found
+            by_event.setdefault(edge.event, {}).setdefault(plant, []).append(edge)
+    return by_event

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from robosc.model import expression as ex
 from robosc.model import rosgraph
-from robosc.model.semantics.operators import Rule, UnreadableError, Value, as_double, divide, operator_of
+from robosc.model.semantics.operators import TypeRule, UnreadableError, Value, as_double, divide, operator_of
 from robosc.model.semantics.walks import operands
 
 if TYPE_CHECKING:
@@ -21,14 +21,14 @@ _LITERALS = (ex.BooleanLiteral, ex.IntegerLiteral, ex.DoubleLiteral, ex.StringLi
 
 
 def evaluate(
-    expression: ex.Expression, read: Callable[[ex.Expression], Value], fit: Callable[[int], int] | None = None
+    expression: ex.Expression, value_of: Callable[[ex.Expression], Value], fit: Callable[[int], int] | None = None
 ) -> Value:
     """Return the value of a well-typed expression; `read` returns the value of each reference in it.
 
     Doubles follow IEEE 754, division by zero included; every comparison with NaN is false. `and`, `or` and `=>` skip
     the right operand if the left one decides. `fit` maps each computed integer; by default integers are unbounded.
     """
-    return Program[Value](expression, lambda reference: partial(read, reference), fit)()
+    return Program[Value](expression, lambda reference: partial(value_of, reference), fit)()
 
 
 class Program(Generic[_Result]):
@@ -68,7 +68,7 @@ class Program(Generic[_Result]):
         while position < len(code):
             kind, argument = code[position]
             position += 1
-            if kind == _READ:
+            if kind == _READ_VALUE:
                 stack.append(argument(*source))
             elif kind == _BINARY:
                 right = stack.pop()
@@ -105,20 +105,20 @@ class Program(Generic[_Result]):
             return [expression.array, (_EACH, (expression, initial)), *loop]
         if isinstance(expression, rosgraph.IfReadable):
             both = (Program[Any](part, self._reader, self._fit) for part in operands(expression))
-            return [(_READ, partial(_if_readable, *both))]
+            return [(_READ_VALUE, partial(_if_readable, *both))]
         row = operator_of(expression)
         if row is None:
             return self._read(expression)
-        given = operands(expression)
+        parts = operands(expression)
         if row.decided is not None:
             decide = (_DECIDE, (row.decided, row.compute(row.decided, False), end))
-            return [given[0], decide, given[1], (_UNARY, bool), end]
+            return [parts[0], decide, parts[1], (_UNARY, bool), end]
         compute = row.compute
-        if self._fit is not None and row.rule is Rule.ARITHMETIC:
+        if self._fit is not None and row.rule is TypeRule.ARITHMETIC:
             compute = partial(_fitted, self._fit, compute)
         if isinstance(expression, ex.FunctionCall):
-            return [*given, (_CALL, (len(given), compute))]
-        return [*given, (_UNARY if len(given) == 1 else _BINARY, compute)]
+            return [*parts, (_CALL, (len(parts), compute))]
+        return [*parts, (_UNARY if len(parts) == 1 else _BINARY, compute)]
 
     def _read(self, reference: ex.Expression) -> list[Any]:
         """Return the instructions for a reference.
@@ -128,9 +128,9 @@ class Program(Generic[_Result]):
         access = reference.argument if isinstance(reference, rosgraph.ConversionCall) else reference
         reader = self._reader(reference)
         bound = access.quantifier if isinstance(access, rosgraph.WireAccess) else None
-        given: list[Any] = [(_BOUND, bound)] if bound is not None else []
-        given += operands(access) if isinstance(access, rosgraph.WireAccess | rosgraph.ArrayLiteral) else []
-        return [*given, (_REACH, (len(given), reader))] if given else [(_READ, reader)]
+        parts: list[Any] = [(_BOUND, bound)] if bound is not None else []
+        parts += operands(access) if isinstance(access, rosgraph.WireAccess | rosgraph.ArrayLiteral) else []
+        return [*parts, (_REACH, (len(parts), reader))] if parts else [(_READ_VALUE, reader)]
 
 
 #: For each quantifier: its value for no elements, and the value of the body that ends the loop. If no value ends it,
@@ -181,7 +181,9 @@ class _Label:
 
 
 #: Kinds of instructions. Each uses its argument and the values on the stack.
-_READ, _CONSTANT, _UNARY, _BINARY, _DECIDE, _UNLESS, _JUMP, _CALL, _REACH, _BOUND, _EACH, _NEXT, _TALLY = range(13)
+_READ_VALUE, _CONSTANT, _UNARY, _BINARY, _DECIDE, _UNLESS, _JUMP, _CALL, _REACH, _BOUND, _EACH, _NEXT, _TALLY = range(
+    13
+)
 #: Marks the end of an array.
 _NOTHING = object()
 

@@ -10,7 +10,7 @@ from robosc.model import robosc
 from robosc.model.reflection import contents, features, is_attribute, tree
 from robosc.model.semantics.evaluation import Value, evaluate, literal, saturate
 from robosc.model.semantics.operators import UnreadableError
-from robosc.model.semantics.walks import copied, walk
+from robosc.model.semantics.walks import copy_tree, walk
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Mapping
@@ -131,7 +131,7 @@ class Expansion:
         """Return a constant expression as a literal. If it has no value, return it expanded."""
         return _folded(self(expression, within))
 
-    def argued(self, expression: ex.Expression, arguments: Arguments) -> ex.Expression:
+    def expand_with(self, expression: ex.Expression, arguments: Arguments) -> ex.Expression:
         """Expand an expression outside of components, such as the condition of an enum's rule, with these arguments."""
         self._readable = False
         start = _Environment(None, arguments, {})
@@ -186,7 +186,7 @@ class Expansion:
 
     def _argument(self, argument: ex.Expression) -> ex.Expression:
         if argument not in self._unplaced:
-            return copied(argument)
+            return copy_tree(argument)
         self._unplaced.remove(argument)
         return argument
 
@@ -199,7 +199,7 @@ class Expansion:
         if owner is None and _is_member(item) and isinstance(item, robosc.Condition):
             return None
         if (item, owner) in self._constants:
-            return copied(self._constants[item, owner])
+            return copy_tree(self._constants[item, owner])
         opened = environment.opened | {item}
         inner = _Environment(owner, owner.arguments if owner else {}, {}, opened, moved=True)
         value: ex.Expression = yield (item.value, inner)
@@ -207,18 +207,18 @@ class Expansion:
             return value
         folded = _folded(value)
         if folded is not value:
-            self._constants[item, owner] = copied(folded)
+            self._constants[item, owner] = copy_tree(folded)
         return folded
 
     def _call(self, call: robosc.Call, environment: _Environment) -> Generator[Any, Any, ex.Expression | None]:
         function = call.function
-        given: list[ex.Expression] = []  # A generator cannot yield from within a comprehension.
+        values: list[ex.Expression] = []  # A generator cannot yield from within a comprehension.
         if function in environment.opened or function.value is None or len(call.arguments) != len(function.parameters):
             return None
         for argument in call.arguments:
-            given.append((yield (argument, environment)))  # noqa: PERF401
-        self._unplaced.update(given)
-        arguments = dict(zip(function.parameters, given, strict=True))
+            values.append((yield (argument, environment)))  # noqa: PERF401
+        self._unplaced.update(values)
+        arguments = dict(zip(function.parameters, values, strict=True))
         owner = environment.within if _is_member(function) else None
         if owner is not None:
             arguments = {**owner.arguments, **arguments}
@@ -231,24 +231,24 @@ class Expansion:
     ) -> Generator[Any, Any, ex.Expression]:
         assert self._instances is not None
         counts = quantifier.quantifier == robosc.Quantifier.count
-        found: list[ex.Expression] = []
+        bodies: list[ex.Expression] = []
         for instance in self._instances.of(quantifier.template):
             templates = {**environment.templates, quantifier.template: instance.component}
             body = yield (quantifier.body, environment._replace(templates=templates))
             if counts:
                 counted, uncounted = ex.IntegerLiteral(value=1), ex.IntegerLiteral(value=0)
                 body = ex.Conditional(condition=body, then=counted, otherwise=uncounted, source=quantifier.source)
-            found.append(body)
-        if not found:
+            bodies.append(body)
+        if not bodies:
             is_all = quantifier.quantifier == robosc.Quantifier.all
             return ex.IntegerLiteral(value=0) if counts else ex.BooleanLiteral(value=is_all)
         operator: Any = _OPERATORS[str(quantifier.quantifier)]
-        return reduce(lambda left, right: operator(left=left, right=right, source=quantifier.source), found)
+        return reduce(lambda left, right: operator(left=left, right=right, source=quantifier.source), bodies)
 
     def _copy(self, element: Any, environment: _Environment) -> Generator[Any, Any, Any]:
-        made = type(element)()
+        copied_element = type(element)()
         if isinstance(element, robosc.ArrayElement):
-            self._elements[element] = made  # References to the element come later.
+            self._elements[element] = copied_element  # References to the element come later.
         children = []
         for _, child in contents(element):
             children.append((yield (child, environment)))
@@ -259,16 +259,16 @@ class Expansion:
                 continue
             if is_attribute(feature) or not feature.containment:
                 if not feature.many:
-                    setattr(made, name, self._elements.get(value, value) if name == "item" else value)
+                    setattr(copied_element, name, self._elements.get(value, value) if name == "item" else value)
             elif feature.many:
-                getattr(made, name).extend(next(inside) for _ in value)
+                getattr(copied_element, name).extend(next(inside) for _ in value)
             else:
-                setattr(made, name, next(inside))
+                setattr(copied_element, name, next(inside))
         if isinstance(element, robosc.Access) and element.component is not None:
             owner = self._owner(element.component, environment)
             if owner is not None and (environment.moved or element.component in environment.templates):
-                made.component = owner.component
-        return made
+                copied_element.component = owner.component
+        return copied_element
 
     def _owner(self, component: robosc.Component | None, environment: _Environment) -> Instance | None:
         if self._instances is None:
@@ -307,9 +307,9 @@ def _folded(expression: ex.Expression) -> ex.Expression:
     value = _value(expression)
     if value is None:
         return expression
-    made = robosc.Access(item=value) if isinstance(value, robosc.EnumValue) else literal(value)
-    made.source = expression.source
-    return made
+    constant_expression = robosc.Access(item=value) if isinstance(value, robosc.EnumValue) else literal(value)
+    constant_expression.source = expression.source
+    return constant_expression
 
 
 def _value(expression: ex.Expression) -> Value | None:

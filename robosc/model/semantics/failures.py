@@ -63,9 +63,9 @@ def brings_data(event: sct.Event, reason: str | None) -> bool:
     return reason not in _WITHOUT_DATA.get(plant_of(event).kind, ())
 
 
-def is_reason(given: sct.Input) -> bool:
+def is_reason(input_element: sct.Input) -> bool:
     """Return whether an input holds the reason of an error."""
-    return given.text == REASON
+    return input_element.text == REASON
 
 
 def is_failure(enum: object) -> bool:

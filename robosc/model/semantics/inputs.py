@@ -11,7 +11,7 @@ from robosc.model.semantics.communication import PortEvent, data_type, happens_a
 from robosc.model.semantics.operators import operator_of
 from robosc.model.semantics.printing import RoboscPrinter
 from robosc.model.semantics.typing import BOOLEAN, INTEGER, EnumType, Types, declared_type
-from robosc.model.semantics.walks import copied, fold, operands, parts
+from robosc.model.semantics.walks import copy_tree, fold, operands, parts
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -58,7 +58,7 @@ class Data:
 
 
 @dataclass(frozen=True)
-class Computed:
+class ComputedValue:
     """A value that the node computes from data without a finite domain, such as `value.range < 0.5`.
 
     Values with the same text are equal. `bounds` are the bounds of an integer, if any apply.
@@ -81,7 +81,7 @@ class FailureReason:
     enum: robosc.EnumDataType
 
 
-Told: TypeAlias = "Data | Computed | FailureReason"
+InputSource: TypeAlias = "Data | ComputedValue | FailureReason"
 
 
 def inputs_in(
@@ -91,7 +91,7 @@ def inputs_in(
     bounds: tuple[int, int] | None = None,
     *,
     is_condition: bool = True,
-) -> Iterator[tuple[ex.Expression, Told | None]]:
+) -> Iterator[tuple[ex.Expression, InputSource | None]]:
     """Iterate over the parts of an expanded expression that become inputs, from left to right.
 
     The input of a part is None if it cannot be one. `bounds` are those of the variable that the expression is assigned
@@ -119,32 +119,35 @@ def inputs_in(
             assert part.enumeration is not None
             yield part, FailureReason(port, event, part.enumeration)
         elif kind in {BOOLEAN, INTEGER} or isinstance(kind, EnumType):
-            yield part, Computed(port, event, RoboscPrinter()(part), limits if kind == INTEGER else None, part, kind)
+            yield (
+                part,
+                ComputedValue(port, event, RoboscPrinter()(part), limits if kind == INTEGER else None, part, kind),
+            )
         elif isinstance(part, robosc.Access) and part.value:
             yield part, None if reads[part].beyond else Data(port, event, property_path(part) or ())
         else:
             # The bounds of a conditional's variable apply to its branches.
             inside = operands(part)
-            kept = [None, limits, limits] if isinstance(part, ex.Conditional) else [None] * len(inside)
-            pending += reversed(list(zip(inside, kept, strict=True)))
+            limits_inside = [None, limits, limits] if isinstance(part, ex.Conditional) else [None] * len(inside)
+            pending += reversed(list(zip(inside, limits_inside, strict=True)))
 
 
-def readable(carried: Computed) -> Computed:
+def readable(carried: ComputedValue) -> ComputedValue:
     """Return the input that is true if all array elements for a value exist: a value is equal to itself."""
-    same = ex.Equation(left=copied(carried.expression), right=copied(carried.expression))
-    return Computed(carried.port, carried.event, RoboscPrinter()(same), None, same, BOOLEAN)
+    same = ex.Equation(left=copy_tree(carried.expression), right=copy_tree(carried.expression))
+    return ComputedValue(carried.port, carried.event, RoboscPrinter()(same), None, same, BOOLEAN)
 
 
-def may_be_missing(carried: Computed) -> bool:
+def may_be_missing(carried: ComputedValue) -> bool:
     """Return whether an array element that the value needs may be missing, at an event that happens even then."""
     return happens_anyway(carried.event) and any(map(_is_partial, parts(carried.expression)))
 
 
 def _reads(part: ex.Expression, inside: Sequence[_Reads], port: PortInstance, event: PortEvent) -> _Reads:
     """Summarize the reads of an expression from those of its operands. The operands of an access are its indices."""
-    data, fixed = any(read.data for read in inside), all(read.fixed for read in inside)
-    beyond, reason = any(read.beyond for read in inside), any(read.reason for read in inside)
-    elements = any(read.elements for read in inside) or _is_partial(part)
+    data, fixed = any(operand.data for operand in inside), all(operand.fixed for operand in inside)
+    beyond, reason = any(operand.beyond for operand in inside), any(operand.reason for operand in inside)
+    elements = any(operand.elements for operand in inside) or _is_partial(part)
     if isinstance(part, robosc.ErrorReason):
         return _Reads(True, True, False, reason=True)
     if not isinstance(part, robosc.Access):
@@ -168,8 +171,8 @@ def _is_finite(declared: robosc.DataType | None) -> bool:
     """Return whether data of the type is an input itself. Unknown types count too; other checks report them."""
     if isinstance(declared, robosc.IntegerDataType):
         return declared.minimum is not None and declared.maximum is not None
-    found = declared_type(declared)
-    return found == BOOLEAN or isinstance(found, EnumType)
+    kind = declared_type(declared)
+    return kind == BOOLEAN or isinstance(kind, EnumType)
 
 
 def property_path(access: robosc.Access) -> tuple[robosc.ObjectProperty, ...] | None:

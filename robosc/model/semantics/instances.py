@@ -66,13 +66,13 @@ class Instance:
     @property
     def transitions(self) -> list[tuple[robosc.Transition, robosc.State | None]]:
         """Transitions of the behaviour in the order of the text, each with its state. None: every state has it."""
-        found: list[tuple[robosc.Transition, robosc.State | None]] = []
+        transitions: list[tuple[robosc.Transition, robosc.State | None]] = []
         for definition in self._definitions:
             if isinstance(definition, robosc.State):
-                found += ((transition, definition) for transition in definition.transitions)
+                transitions += ((transition, definition) for transition in definition.transitions)
             elif isinstance(definition, robosc.Transition):
-                found.append((definition, None))
-        return found
+                transitions.append((definition, None))
+        return transitions
 
     @property
     def _definitions(self) -> Iterable[robosc.AutomatonDefinition]:
@@ -92,9 +92,9 @@ class Instance:
             return declared
         if declared not in self._types:
             low, high = constant_value(declared.lower, self), constant_value(declared.upper, self)
-            self._types[declared] = made = robosc.IntegerDataType(source=declared.source)
+            self._types[declared] = bounded_type = robosc.IntegerDataType(source=declared.source)
             if isinstance(low, int) and isinstance(high, int):
-                made.minimum, made.maximum = low, high
+                bounded_type.minimum, bounded_type.maximum = low, high
         return self._types[declared]
 
 
@@ -183,23 +183,23 @@ class Instances:
         """Return whether another instance has a communication of the same name."""
         return self._names[communication.name] > 1
 
-    def provided(self, port: PortInstance) -> list[Statement[robosc.ProvideStatement]]:
+    def provide_statements(self, port: PortInstance) -> list[Statement[robosc.ProvideStatement]]:
         """Return the statements on the data of a communication, in the order of the text.
 
         Statements outside of components override those inside.
         """
-        found = self._provided.get(port, [])
-        outside = [statement for statement in found if statement.within is None]
-        return outside or found
+        statements = self._provided.get(port, [])
+        outside = [statement for statement in statements if statement.within is None]
+        return outside or statements
 
     def statements(self, kind: type[_Element]) -> list[Statement[_Element]]:
         """Return the requirements, or other definitions of a kind: outside of components, then in each instance."""
-        found: list[Statement[_Element]] = []
+        statements: list[Statement[_Element]] = []
         texts: list[tuple[Iterable[Any], Instance | None]] = [(self.base.definitions, None)]
         texts += ((instance.local.definitions, instance) for instance in self)
         for definitions, within in texts:
-            found += [Statement(definition, within) for definition in definitions if isinstance(definition, kind)]
-        return found
+            statements += [Statement(definition, within) for definition in definitions if isinstance(definition, kind)]
+        return statements
 
     def of(self, component: robosc.Component) -> list[Instance]:
         """Return the instances that a component's text defines."""
@@ -272,7 +272,7 @@ class Instances:
         return provided
 
 
-def imported(base: robosc.Base) -> list[tuple[robosc.Component, robosc.Library]]:
+def imported_components(base: robosc.Base) -> list[tuple[robosc.Component, robosc.Library]]:
     """Return each imported component with its library, in the order of the text. Skips unresolved libraries."""
     return [
         (component, component.type.library)
@@ -284,20 +284,21 @@ def imported(base: robosc.Base) -> list[tuple[robosc.Component, robosc.Library]]
 
 
 def libraries(
-    base: robosc.Base, imports: Callable[[robosc.Base], list[tuple[robosc.Component, robosc.Library]]] = imported
+    base: robosc.Base,
+    imports: Callable[[robosc.Base], list[tuple[robosc.Component, robosc.Library]]] = imported_components,
 ) -> list[robosc.Library]:
     """Return every library that a base imports, directly or indirectly, each once, the nearest first.
 
     The base itself is not included. `imports` returns the imports of a base, for callers that have them already.
     """
-    found: dict[robosc.Library, None] = {}
+    imported_libraries: dict[robosc.Library, None] = {}
     queue: list[robosc.Base] = [base]
     for current in queue:
         for _, library in imports(current):
-            if library not in found and library is not base:
-                found[library] = None
+            if library not in imported_libraries and library is not base:
+                imported_libraries[library] = None
                 queue.append(library)
-    return list(found)
+    return list(imported_libraries)
 
 
 def definition_of(component: robosc.Component) -> robosc.Component | None:
@@ -315,13 +316,13 @@ def bound_arguments(
     parameters: Sequence[robosc.FormalParameter], arguments: Sequence[robosc.Argument]
 ) -> dict[robosc.FormalParameter, ex.Expression]:
     """Return the expression of each parameter: by name, by position, or its default. The first of duplicates counts."""
-    found: dict[robosc.FormalParameter, ex.Expression] = {}
+    bound: dict[robosc.FormalParameter, ex.Expression] = {}
     for position, argument in enumerate(arguments):
         parameter = argument.parameter or (parameters[position] if position < len(parameters) else None)
         if parameter is not None and argument.value is not None:
-            found.setdefault(parameter, argument.value)
+            bound.setdefault(parameter, argument.value)
     defaults = ((parameter, parameter.default) for parameter in parameters if parameter.default is not None)
-    return dict(defaults) | found
+    return dict(defaults) | bound
 
 
 def _instantiate(component: robosc.Component, base: robosc.Base, resolved: Resolved) -> Instance | None:
@@ -330,34 +331,34 @@ def _instantiate(component: robosc.Component, base: robosc.Base, resolved: Resol
         return None  # a template
     chain: list[tuple[robosc.Component, robosc.InstantiatedComponent | robosc.ImportedComponent]] = []
     unit, current, seen = base, component, {component}
-    found: Instance | None = None
+    instance: Instance | None = None
     while current not in resolved:
-        made = current.type
-        if isinstance(made, robosc.LocalComponent):
-            found = Instance(current, made, unit, current)
+        kind = current.type
+        if isinstance(kind, robosc.LocalComponent):
+            instance = Instance(current, kind, unit, current)
             break
-        if not isinstance(made, robosc.InstantiatedComponent | robosc.ImportedComponent):
+        if not isinstance(kind, robosc.InstantiatedComponent | robosc.ImportedComponent):
             break
-        chain.append((current, made))
-        unit, current = made.library if isinstance(made, robosc.ImportedComponent) else unit, made.definition
+        chain.append((current, kind))
+        unit, current = kind.library if isinstance(kind, robosc.ImportedComponent) else unit, kind.definition
         if unit is None or current is None or current in seen:
             break
         seen.add(current)
     else:
-        found = resolved[current]
-    for importing, made in reversed(chain):
-        if found is not None:
+        instance = resolved[current]
+    for importing, kind in reversed(chain):
+        if instance is not None:
             topics: dict[robosc.CommunicationType, str] = {}
-            for remapping in made.remappings if isinstance(made, robosc.ImportedComponent) else ():
+            for remapping in kind.remappings if isinstance(kind, robosc.ImportedComponent) else ():
                 topics.setdefault(remapping.communicationType, _identifier(remapping))
-            given = found.arguments
-            if found.component.parameters:
-                bound = bound_arguments(found.component.parameters, made.arguments)
-                given = {parameter: constant(value) for parameter, value in bound.items()}
-            topics |= found.topics | topics
-            found = Instance(importing, found.local, found.unit, found.definition, topics, given)
-        resolved[importing] = found
-    return found
+            arguments = instance.arguments
+            if instance.component.parameters:
+                bound = bound_arguments(instance.component.parameters, kind.arguments)
+                arguments = {parameter: constant(value) for parameter, value in bound.items()}
+            topics |= instance.topics | topics
+            instance = Instance(importing, instance.local, instance.unit, instance.definition, topics, arguments)
+        resolved[importing] = instance
+    return instance
 
 
 def _identifier(remapping: robosc.TopicRemapping) -> str:

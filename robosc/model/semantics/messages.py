@@ -28,7 +28,7 @@ EACH = "*"
 
 
 @dataclass(frozen=True)
-class Read:
+class MessageRead:
     """A part of a message that is read: a value of a type, or the argument of a conversion.
 
     `reference` is the first expression that reads it. Without type and conversion the part is an object, and none
@@ -46,16 +46,18 @@ class Read:
 
 
 #: Parts read of a message. An array whose elements are all read has the parts of an element.
-Shown: TypeAlias = "dict[Path, Read | Shown]"
+Shown: TypeAlias = "dict[Path, MessageRead | Shown]"
 
 
 def receptions(graph: rosgraph.RosGraph) -> list[rosgraph.Reception]:
     """Return all receptions of data, and the errors of services, which have a reason."""
     errors = [service.error for service in graph.serviceClients]
-    return [*(reception for _, _, several in received(graph) for reception in several), *errors]
+    return [*(reception for _, _, several in received_messages(graph) for reception in several), *errors]
 
 
-def received(graph: rosgraph.RosGraph) -> Iterator[tuple[rosgraph.Interface, Section, Sequence[rosgraph.Reception]]]:
+def received_messages(
+    graph: rosgraph.RosGraph,
+) -> Iterator[tuple[rosgraph.Interface, Section, Sequence[rosgraph.Reception]]]:
     """Yield each kind of incoming ROS message: its interface, the section, and its receptions."""
     for topic in graph.subscriptions:
         yield topic.interface, Section.MESSAGE, topic.receptions
@@ -74,7 +76,7 @@ def sections(graph: rosgraph.RosGraph) -> dict[str, tuple[str, str, Section]]:
     """
     known = {
         event_name(reception.event): (interface.package, interface.type, section)
-        for interface, section, several in received(graph)
+        for interface, section, several in received_messages(graph)
         for reception in several
     }
     answers = {event_name(client.error.event): event_name(client.response.event) for client in graph.serviceClients}
@@ -173,24 +175,24 @@ def origins(graph: rosgraph.RosGraph) -> dict[rosgraph.NodeVariable, dict[tuple[
     """
     known = {reception.event: reception for reception in receptions(graph)}
     stored = [
-        (reaction.event, given.variable, value)
+        (reaction.event, assignment.variable, value)
         for reaction in graph.reactions
-        for given in reaction.assignments
-        if is_structured(given.variable.type) and isinstance(value := whole(given.value), rosgraph.WireAccess)
+        for assignment in reaction.assignments
+        if is_structured(assignment.variable.type) and isinstance(value := whole(assignment.value), rosgraph.WireAccess)
     ]
-    found: dict[rosgraph.NodeVariable, dict[tuple[rosgraph.Reception, Path], None]] = {}
+    by_variable: dict[rosgraph.NodeVariable, dict[tuple[rosgraph.Reception, Path], None]] = {}
     changed = True
     while changed:
         changed = False
         for event, variable, access in stored:
-            starts = found.get(access.variable, {}) if access.variable else {(known[event], ()): None}
+            starts = by_variable.get(access.variable, {}) if access.variable else {(known[event], ()): None}
             places = {(reception, (*path, *path_of(access))): None for reception, path in starts}
-            changed = changed or not places.keys() <= found.get(variable, {}).keys()
-            found.setdefault(variable, {}).update(places)
-    return {variable: places for variable, places in found.items() if places}
+            changed = changed or not places.keys() <= by_variable.get(variable, {}).keys()
+            by_variable.setdefault(variable, {}).update(places)
+    return {variable: places for variable, places in by_variable.items() if places}
 
 
-def kept_reads(graph: rosgraph.RosGraph) -> Iterator[tuple[rosgraph.Reception, Path, Read]]:
+def kept_reads(graph: rosgraph.RosGraph) -> Iterator[tuple[rosgraph.Reception, Path, MessageRead]]:
     """Yield the reads of stored data, as reads of the message that the data came in."""
     known = origins(graph)
     for _, part in tree(graph):
@@ -202,7 +204,7 @@ def kept_reads(graph: rosgraph.RosGraph) -> Iterator[tuple[rosgraph.Reception, P
             if isinstance(kind, rosgraph.ArrayType) and conversion is None:
                 kind, inside = kind.element, (*inside, EACH)
             for reception, path in known.get(variable, ()) if variable else ():
-                yield reception, (*path, *inside), Read(part, kind, conversion)
+                yield reception, (*path, *inside), MessageRead(part, kind, conversion)
 
 
 def reads_reason(values: Iterable[ex.Expression]) -> bool:
@@ -210,7 +212,7 @@ def reads_reason(values: Iterable[ex.Expression]) -> bool:
     return any(isinstance(part, rosgraph.ErrorReason) for value in values for _, part in tree(value))
 
 
-def reads(values: Iterable[ex.Expression]) -> Iterator[tuple[Path, Read]]:
+def reads(values: Iterable[ex.Expression]) -> Iterator[tuple[Path, MessageRead]]:
     """Yield the paths of a message that expressions read. The argument of a conversion is one read, its conversion.
 
     A stored object counts as a read of all its known fields: they may be read or sent later.
@@ -219,22 +221,27 @@ def reads(values: Iterable[ex.Expression]) -> Iterator[tuple[Path, Read]]:
         owner = value.eContainer()
         if isinstance(owner, rosgraph.IfReadable):
             owner = owner.eContainer()
-        kept = owner.variable.type if isinstance(owner, rosgraph.NodeAssignment) else None
-        if isinstance(value, rosgraph.WireAccess) and value.variable is None and kept and holds_objects(kept):
-            for inside, kind in parts_of(kept):
+        stored_type = owner.variable.type if isinstance(owner, rosgraph.NodeAssignment) else None
+        if (
+            isinstance(value, rosgraph.WireAccess)
+            and value.variable is None
+            and stored_type
+            and holds_objects(stored_type)
+        ):
+            for inside, kind in parts_of(stored_type):
                 path = (*path_of(value), *inside)
-                yield path, Read(value if EACH in path else access_to(path, type(kind)()), kind)
+                yield path, MessageRead(value if EACH in path else access_to(path, type(kind)()), kind)
         argument = None
         for _, part in tree(value):
             if isinstance(part, rosgraph.ConversionCall):
                 argument = part.argument
                 if source_of(argument) is None:
-                    yield path_of(argument), Read(part, conversion=part.conversion)
+                    yield path_of(argument), MessageRead(part, conversion=part.conversion)
             elif isinstance(part, rosgraph.WireAccess) and part is not argument and source_of(part) is None:
                 if isinstance(part.type, rosgraph.ArrayType):
-                    yield (*path_of(part), EACH), Read(part, part.type.element)
+                    yield (*path_of(part), EACH), MessageRead(part, part.type.element)
                 else:
-                    yield path_of(part), Read(part, part.type)
+                    yield path_of(part), MessageRead(part, part.type)
 
 
 def parts_of(kind: ex.Type | None, path: Path = ()) -> Iterator[tuple[Path, ex.Type]]:
@@ -260,37 +267,37 @@ def access_to(path: Path, kind: ex.Type | None = None) -> rosgraph.WireAccess:
     return rosgraph.WireAccess(steps=steps, type=kind)
 
 
-def shown(values: Iterable[ex.Expression]) -> Shown:
+def logged_data(values: Iterable[ex.Expression]) -> Shown:
     """Return the data that expressions read, as the event log shows it.
 
     A read of an element at any position shows the whole array.
     """
-    found: dict[Path, Read] = {}
-    for path, read in reads(values):
-        if path not in found or not found[path].is_value:
-            found[path] = read
-    objects = [path for path, read in found.items() if not read.is_value]
+    reads_by_path: dict[Path, MessageRead] = {}
+    for path, message_read in reads(values):
+        if path not in reads_by_path or not reads_by_path[path].is_value:
+            reads_by_path[path] = message_read
+    objects = [path for path, message_read in reads_by_path.items() if not message_read.is_value]
     for path in objects:
-        if any(other[: len(path)] == path for other in found if other != path):
-            del found[path]  # something is read of it
-    return _in_arrays(found)
+        if any(other[: len(path)] == path for other in reads_by_path if other != path):
+            del reads_by_path[path]  # something is read of it
+    return _in_arrays(reads_by_path)
 
 
-def _in_arrays(found: dict[Path, Read]) -> Shown:
-    arrays = {path[: path.index(EACH)] for path in found if EACH in path}
-    made: Shown = {}
-    elements: dict[Path, dict[Path, Read]] = {}
-    for path, read in found.items():
+def _in_arrays(reads_by_path: dict[Path, MessageRead]) -> Shown:
+    arrays = {path[: path.index(EACH)] for path in reads_by_path if EACH in path}
+    nested: Shown = {}
+    elements: dict[Path, dict[Path, MessageRead]] = {}
+    for path, message_read in reads_by_path.items():
         array = next((path[:length] for length in range(len(path)) if path[:length] in arrays), None)
         if array is None:
-            made[path] = read
+            nested[path] = message_read
         else:
-            made.setdefault(array, {})
+            nested.setdefault(array, {})
             rest = tuple(EACH if step.isdigit() else step for step in path[len(array) + 1 :])
-            elements.setdefault(array, {}).setdefault(rest, read)
+            elements.setdefault(array, {}).setdefault(rest, message_read)
     for array, inside in elements.items():
-        made[array] = _in_arrays(inside)
-    return made
+        nested[array] = _in_arrays(inside)
+    return nested
 
 
 def paths_set(sending: rosgraph.Sending) -> list[Path]:
@@ -306,12 +313,12 @@ def parts_with_headers(sending: rosgraph.Sending) -> list[tuple[str, ...]]:
     """
     paths = paths_set(sending)
     parts = {()} | {path[:length] for path in paths for length in range(1, len(path))}
-    given = {path[: path.index("header")] for path in paths if "header" in path}
-    return sorted(part for part in parts - given if "header" not in part)
+    with_header = {path[: path.index("header")] for path in paths if "header" in path}
+    return sorted(part for part in parts - with_header if "header" not in part)
 
 
-def message_named(graph: rosgraph.RosGraph, name: str) -> rosgraph.Sending | None:
+def find_message(graph: rosgraph.RosGraph, name: str) -> rosgraph.Sending | None:
     """Return the message that the node sends with this name or `Component.name`; None unless there is exactly one."""
     sendings = [sending for publisher in graph.publishers for sending in publisher.sendings]
-    found = [sending for sending in sendings if name in (sending.name, sending.event.eContainer().origin)]
-    return found[0] if len(found) == 1 else None
+    matches = [sending for sending in sendings if name in (sending.name, sending.event.eContainer().origin)]
+    return matches[0] if len(matches) == 1 else None

@@ -18,9 +18,9 @@ _GRAMMAR = locate("grammar/robosc.tx").read_text(encoding="utf-8")
 
 def _words(pattern: str) -> list[str]:
     """Return the words in the group of a pattern of the grammar."""
-    found = re.search(pattern, _GRAMMAR, re.MULTILINE)
-    assert found
-    return found[1].split("|")
+    match = re.search(pattern, _GRAMMAR, re.MULTILINE)
+    assert match
+    return match[1].split("|")
 
 
 #: Keywords of RoboSC that need a `^` before them if they are used as a name in an expression.
@@ -68,7 +68,7 @@ def escape(name: str, keywords: Collection[str]) -> str:
     return name if longest is None else name + "_" * (longest - len(stem) + 1)
 
 
-def written(name: str) -> str:
+def escape_keyword(name: str) -> str:
     """Return a name for a RoboSC text at a place where a keyword may stand."""
     return f"^{name}" if name in ROBOSC_KEYWORDS else name
 

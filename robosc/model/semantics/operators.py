@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 Value: TypeAlias = bool | int | float | str | object
 
 
-class Rule(Enum):
+class TypeRule(Enum):
     """Types of the operands and of the value."""
 
     #: Booleans; a boolean.
@@ -50,7 +50,7 @@ class Rule(Enum):
 
 
 #: Rules of the operators with a boolean value.
-CONDITIONS = {Rule.LOGICAL, Rule.EQUALITY, Rule.ORDERING}
+CONDITIONS = {TypeRule.LOGICAL, TypeRule.EQUALITY, TypeRule.ORDERING}
 
 
 class Associativity(Enum):
@@ -83,7 +83,7 @@ class Operator:
     metaclass: type[ex.Expression]
     symbol: str
     precedence: int
-    rule: Rule
+    rule: TypeRule
     compute: Callable[..., Any]
     interval: Callable[..., Interval] | None
     associativity: Associativity = Associativity.LEFT
@@ -94,12 +94,12 @@ class Operator:
     @property
     def is_partial(self) -> bool:
         """Whether some operands have no value."""
-        return self.rule in {Rule.ROUNDING, Rule.ELEMENTS}
+        return self.rule in {TypeRule.ROUNDING, TypeRule.ELEMENTS}
 
     @property
     def is_supervised(self) -> bool:
         """Whether sct models have the operator, so that the supervisor computes it."""
-        return self.rule not in {Rule.DOUBLE, Rule.ROUNDING, Rule.SIZE, Rule.ELEMENTS}
+        return self.rule not in {TypeRule.DOUBLE, TypeRule.ROUNDING, TypeRule.SIZE, TypeRule.ELEMENTS}
 
 
 def as_double(number: Value) -> float:
@@ -164,7 +164,7 @@ def _first(before: Callable[[Any, Any], bool]) -> Callable[[Any], Any]:
         numbers = [value for value in values if value == value]  # noqa: PLR0124 - NaN is passed over
         if not numbers:
             raise UnreadableError(f"there is no number in an array of {len(values)}")
-        return reduce(lambda found, value: value if before(value, found) else found, numbers)
+        return reduce(lambda best, value: value if before(value, best) else best, numbers)
 
     return chosen
 
@@ -224,7 +224,7 @@ OPERATORS = (
         ex.Implication,
         "=>",
         1,
-        Rule.LOGICAL,
+        TypeRule.LOGICAL,
         lambda left, right: not left or bool(right),
         lambda left, right: _either_in(_denied(left), right),
         _RIGHT,
@@ -234,7 +234,7 @@ OPERATORS = (
         ex.Disjunction,
         "or",
         2,
-        Rule.LOGICAL,
+        TypeRule.LOGICAL,
         lambda left, right: bool(left or right),
         _either_in,
         _CHAIN,
@@ -244,25 +244,27 @@ OPERATORS = (
         ex.Conjunction,
         "and",
         3,
-        Rule.LOGICAL,
+        TypeRule.LOGICAL,
         lambda left, right: bool(left and right),
         _both_in,
         _CHAIN,
         decided=False,
     ),
-    Operator(ex.Equation, "=", 4, Rule.EQUALITY, operator.eq, _equal_in),
-    Operator(ex.Inequation, "!=", 4, Rule.EQUALITY, _differ, lambda left, right: _denied(_equal_in(left, right))),
-    Operator(ex.LessThan, "<", 5, Rule.ORDERING, operator.lt, _less_in),
-    Operator(ex.LessOrEqual, "<=", 5, Rule.ORDERING, operator.le, lambda left, right: _denied(_less_in(right, left))),
-    Operator(ex.GreaterThan, ">", 5, Rule.ORDERING, operator.gt, lambda left, right: _less_in(right, left)),
+    Operator(ex.Equation, "=", 4, TypeRule.EQUALITY, operator.eq, _equal_in),
+    Operator(ex.Inequation, "!=", 4, TypeRule.EQUALITY, _differ, lambda left, right: _denied(_equal_in(left, right))),
+    Operator(ex.LessThan, "<", 5, TypeRule.ORDERING, operator.lt, _less_in),
     Operator(
-        ex.GreaterOrEqual, ">=", 5, Rule.ORDERING, operator.ge, lambda left, right: _denied(_less_in(left, right))
+        ex.LessOrEqual, "<=", 5, TypeRule.ORDERING, operator.le, lambda left, right: _denied(_less_in(right, left))
+    ),
+    Operator(ex.GreaterThan, ">", 5, TypeRule.ORDERING, operator.gt, lambda left, right: _less_in(right, left)),
+    Operator(
+        ex.GreaterOrEqual, ">=", 5, TypeRule.ORDERING, operator.ge, lambda left, right: _denied(_less_in(left, right))
     ),
     Operator(
         ex.Addition,
         "+",
         6,
-        Rule.ARITHMETIC,
+        TypeRule.ARITHMETIC,
         _arithmetic(operator.add),
         lambda left, right: Interval(left.low + right.low, left.high + right.high),
         _CHAIN,
@@ -271,18 +273,18 @@ OPERATORS = (
         ex.Subtraction,
         "-",
         6,
-        Rule.ARITHMETIC,
+        TypeRule.ARITHMETIC,
         _arithmetic(operator.sub),
         lambda left, right: Interval(left.low - right.high, left.high - right.low),
     ),
-    Operator(ex.Multiplication, "*", 7, Rule.ARITHMETIC, _arithmetic(operator.mul), _product_in, _CHAIN),
-    Operator(ex.Division, "/", 7, Rule.DOUBLE, lambda left, right: divide(as_double(left), as_double(right)), None),
-    Operator(ex.Negation, "!", 8, Rule.LOGICAL, operator.not_, _denied),
-    Operator(ex.UnaryMinus, "-", 8, Rule.ARITHMETIC, operator.neg, lambda value: Interval(-value.high, -value.low)),
+    Operator(ex.Multiplication, "*", 7, TypeRule.ARITHMETIC, _arithmetic(operator.mul), _product_in, _CHAIN),
+    Operator(ex.Division, "/", 7, TypeRule.DOUBLE, lambda left, right: divide(as_double(left), as_double(right)), None),
+    Operator(ex.Negation, "!", 8, TypeRule.LOGICAL, operator.not_, _denied),
+    Operator(ex.UnaryMinus, "-", 8, TypeRule.ARITHMETIC, operator.neg, lambda value: Interval(-value.high, -value.low)),
 )
 
 
-def _function(name: str, rule: Rule, compute: Callable[..., Any], parameters: int = 1) -> Operator:
+def _function(name: str, rule: TypeRule, compute: Callable[..., Any], parameters: int = 1) -> Operator:
     return Operator(ex.FunctionCall, name, 9, rule, compute, None, parameters=parameters)
 
 
@@ -291,42 +293,42 @@ _LEAST, _MOST = -(2**31), 2**31 - 1
 
 #: Functions by name.
 FUNCTIONS = {
-    "mod": Operator(ex.FunctionCall, "mod", 9, Rule.INTEGER, modulo, None, parameters=2, divisors=frozenset({1}))
+    "mod": Operator(ex.FunctionCall, "mod", 9, TypeRule.INTEGER, modulo, None, parameters=2, divisors=frozenset({1}))
 } | {
     row.symbol: row
     for row in (
-        _function("abs", Rule.ARITHMETIC, abs),
-        _function("min", Rule.ARITHMETIC, _preferred(operator.lt), 2),
-        _function("max", Rule.ARITHMETIC, _preferred(operator.gt), 2),
-        _function("floor", Rule.ROUNDING, _rounded(math.floor)),
-        _function("ceil", Rule.ROUNDING, _rounded(math.ceil)),
-        _function("round", Rule.ROUNDING, _rounded(_nearest)),
-        _function("sqrt", Rule.DOUBLE, _finite(math.sqrt)),
-        _function("sin", Rule.DOUBLE, _finite(math.sin)),
-        _function("cos", Rule.DOUBLE, _finite(math.cos)),
-        _function("atan2", Rule.DOUBLE, lambda y, x: math.atan2(as_double(y), as_double(x)), 2),
-        _function("double", Rule.DOUBLE, as_double),
-        _function("size", Rule.SIZE, len),
+        _function("abs", TypeRule.ARITHMETIC, abs),
+        _function("min", TypeRule.ARITHMETIC, _preferred(operator.lt), 2),
+        _function("max", TypeRule.ARITHMETIC, _preferred(operator.gt), 2),
+        _function("floor", TypeRule.ROUNDING, _rounded(math.floor)),
+        _function("ceil", TypeRule.ROUNDING, _rounded(math.ceil)),
+        _function("round", TypeRule.ROUNDING, _rounded(_nearest)),
+        _function("sqrt", TypeRule.DOUBLE, _finite(math.sqrt)),
+        _function("sin", TypeRule.DOUBLE, _finite(math.sin)),
+        _function("cos", TypeRule.DOUBLE, _finite(math.cos)),
+        _function("atan2", TypeRule.DOUBLE, lambda y, x: math.atan2(as_double(y), as_double(x)), 2),
+        _function("double", TypeRule.DOUBLE, as_double),
+        _function("size", TypeRule.SIZE, len),
     )
 }
 #: Functions that share a name with the above and take one array.
 _OF_ARRAYS = {
-    "min": _function("min", Rule.ELEMENTS, _first(operator.lt)),
-    "max": _function("max", Rule.ELEMENTS, _first(operator.gt)),
+    "min": _function("min", TypeRule.ELEMENTS, _first(operator.lt)),
+    "max": _function("max", TypeRule.ELEMENTS, _first(operator.gt)),
 }
 
 BY_CLASS = {row.metaclass: row for row in OPERATORS} | {
     # Only transformations create these; they have no text.
-    ex.DoubleConversion: Operator(ex.DoubleConversion, "", 9, Rule.DOUBLE, as_double, None),
+    ex.DoubleConversion: Operator(ex.DoubleConversion, "", 9, TypeRule.DOUBLE, as_double, None),
     sct.Quotient: Operator(
         sct.Quotient,
         "div",
         7,
-        Rule.INTEGER,
+        TypeRule.INTEGER,
         operator.floordiv,
         lambda left, right: Interval(left.low // right.low, left.high // right.low),
     ),
-    engine.Remainder: Operator(engine.Remainder, "%", 7, Rule.INTEGER, _remainder, _remainder_in),
+    engine.Remainder: Operator(engine.Remainder, "%", 7, TypeRule.INTEGER, _remainder, _remainder_in),
 }
 PRECEDENCE = {row.metaclass: row.precedence for row in OPERATORS}
 SYMBOLS = {row.metaclass: row.symbol for row in OPERATORS} | {sct.Quotient: "div"}
@@ -334,12 +336,14 @@ SYMBOLS = {row.metaclass: row.symbol for row in OPERATORS} | {sct.Quotient: "div
 ATOM = 9
 
 
-def _of(*rules: Rule) -> tuple[type[ex.Expression], ...]:
+def _of(*rules: TypeRule) -> tuple[type[ex.Expression], ...]:
     return tuple(row.metaclass for row in OPERATORS if row.rule in rules)
 
 
 #: Classes of operators by kind, for `isinstance`.
-LOGICAL, EQUALITY, ORDERING, ARITHMETIC = map(_of, (Rule.LOGICAL, Rule.EQUALITY, Rule.ORDERING, Rule.ARITHMETIC))
+LOGICAL, EQUALITY, ORDERING, ARITHMETIC = map(
+    _of, (TypeRule.LOGICAL, TypeRule.EQUALITY, TypeRule.ORDERING, TypeRule.ARITHMETIC)
+)
 COMPARISONS = cast("tuple[type[ex.BinaryExpression], ...]", (*EQUALITY, *ORDERING))
 
 

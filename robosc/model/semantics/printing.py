@@ -12,7 +12,7 @@ from robosc.base.diagnostics.visible import visible
 from robosc.model import expression as ex
 from robosc.model import robosc, sct
 from robosc.model.semantics.communication import RUNNING_WORD
-from robosc.model.semantics.naming import written
+from robosc.model.semantics.naming import escape_keyword
 from robosc.model.semantics.operators import ATOM, PRECEDENCE, SYMBOLS, Associativity, operator_of
 from robosc.model.semantics.walks import fold, operands
 
@@ -57,16 +57,16 @@ class Printer:
         """Return the operands to print before the expression. A target may override this."""
         return operands(expression)
 
-    def write(self, expression: ex.Expression, given: Sequence[Printed]) -> Printed:
+    def write(self, expression: ex.Expression, printed_operands: Sequence[Printed]) -> Printed:
         """Print an expression, given its printed operands."""
         if isinstance(expression, ex.BinaryExpression):
-            return self.binary(expression, *given)
+            return self.binary(expression, *printed_operands)
         if isinstance(expression, (ex.Negation, ex.UnaryMinus)):
-            return self.unary(expression, *given)
+            return self.unary(expression, *printed_operands)
         if isinstance(expression, ex.Conditional):
-            return self.choice(*given)
+            return self.choice(*printed_operands)
         if isinstance(expression, ex.FunctionCall):
-            return self.call(expression, given)
+            return self.call(expression, printed_operands)
         return Printed(self.atom(expression))
 
     def binary(self, expression: ex.BinaryExpression, left: Printed, right: Printed) -> Printed:
@@ -86,14 +86,18 @@ class Printer:
         """Print an operator before its operand. Parentheses separate two in a row, so that it never prints `--x`."""
         return Printed(f"{self.symbols[type(expression)]}{operand.tight}", PRECEDENCE[type(expression)])
 
-    def operand(self, outer: int, given: Printed, *, bare: bool = False) -> str:
+    def operand(self, outer: int, printed_operand: Printed, *, bare: bool = False) -> str:
         """Return an operand of a binary operator, in parentheses if the tree or a reader needs them."""
-        binds = given.precedence > outer and (outer, given.precedence) not in _LOOSE_PAIRS
-        return given.text if binds or (bare and given.precedence == outer) else f"({given.text})"
+        binds = printed_operand.precedence > outer and (outer, printed_operand.precedence) not in _LOOSE_PAIRS
+        return (
+            printed_operand.text
+            if binds or (bare and printed_operand.precedence == outer)
+            else f"({printed_operand.text})"
+        )
 
-    def call(self, expression: ex.FunctionCall, given: Sequence[Printed]) -> Printed:
+    def call(self, expression: ex.FunctionCall, printed_operands: Sequence[Printed]) -> Printed:
         """Print a function call."""
-        return Printed(f"{expression.function}({', '.join(text for text, _ in given)})")
+        return Printed(f"{expression.function}({', '.join(text for text, _ in printed_operands)})")
 
     def choice(self, condition: Printed, then: Printed, otherwise: Printed) -> Printed:
         """Print a conditional: one value if the condition holds, else the other."""
@@ -112,12 +116,12 @@ class Printer:
 class RoboscPrinter(Printer):
     """Prints a linked expression of a robot model as in its text, with qualified states and variables."""
 
-    def write(self, expression: ex.Expression, given: Sequence[Printed]) -> Printed:
+    def write(self, expression: ex.Expression, printed_operands: Sequence[Printed]) -> Printed:
         """Print an access, a quantifier, an array or a call, or any expression that all printers know."""
-        texts = [text for text, _ in given]
+        texts = [text for text, _ in printed_operands]
         match expression:
             case robosc.Access():
-                name = "value" if expression.item is None else written(expression.item.name)
+                name = "value" if expression.item is None else escape_keyword(expression.item.name)
                 component = expression.component
                 if isinstance(expression.item, robosc.RequirementState):
                     component = expression.item.eContainer()
@@ -128,7 +132,9 @@ class RoboscPrinter(Printer):
                 return Printed(owner + name + "".join(_step(segment, indices) for segment in expression.segments))
             case robosc.ArrayQuantifier():
                 array, body = texts
-                return Printed(f"({expression.quantifier} {written(expression.element.name)} in {array}: {body})")
+                return Printed(
+                    f"({expression.quantifier} {escape_keyword(expression.element.name)} in {array}: {body})"
+                )
             case robosc.InstanceQuantifier():
                 return Printed(f"({expression.quantifier} {_name(expression.template)}: {texts[0]})")
             case robosc.ErrorReason():
@@ -137,11 +143,11 @@ class RoboscPrinter(Printer):
                 return Printed(f"{_name(expression.function)}({', '.join(texts)})")
             case robosc.ArrayLiteral():
                 return Printed(f"[{', '.join(texts)}]")
-        return super().write(expression, given)
+        return super().write(expression, printed_operands)
 
     def owner(self, component: robosc.Component) -> str:
         """Return the prefix for the name of a component's member."""
-        return f"{written(component.name)}."
+        return f"{escape_keyword(component.name)}."
 
     def atom(self, expression: ex.Expression) -> str:
         """Return the text of a literal."""
@@ -154,9 +160,9 @@ class RoboscPrinter(Printer):
         return super().atom(expression)
 
 
-def _name(found: ex.NamedElement | None) -> str:
+def _name(element: ex.NamedElement | None) -> str:
     """Return the name of a referenced element. Linking reports unresolved references."""
-    return written(found.name) if found else "…"
+    return escape_keyword(element.name) if element else "…"
 
 
 def _step(segment: robosc.AccessSegment, indices: Iterator[str]) -> str:

@@ -167,9 +167,9 @@ class Roles:
 
 def _by_source(events: Iterable[sct.Event]) -> tuple[tuple[sct.Event, ...], ...]:
     """Group events of messages by topic, with or without a leading slash, and other events by plant."""
-    found: dict[str | sct.Plant, list[sct.Event]] = {}
+    groups: dict[str | sct.Plant, list[sct.Event]] = {}
     for event in events:
         plant = plant_of(event)
         named = plant.kind == sct.PlantKind.message and plant.topic
-        found.setdefault(plant.topic.removeprefix("/") if named and plant.topic else plant, []).append(event)
-    return tuple(map(tuple, found.values()))
+        groups.setdefault(plant.topic.removeprefix("/") if named and plant.topic else plant, []).append(event)
+    return tuple(map(tuple, groups.values()))

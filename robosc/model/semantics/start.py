@@ -34,18 +34,20 @@ def first_state(model: sct.SupervisoryControlModel) -> dict[_Element, int]:
     order = list(choices)
     place = {element: number for number, element in enumerate(order)}
     # Each predicate is checked as soon as all elements that it reads have values.
-    asked: dict[int, list[Program[bool]]] = {}
+    predicates_by_last: dict[int, list[Program[bool]]] = {}
     for predicate in predicates:
         last = max((place[element] for element in _read(predicate)), default=-1)
-        asked.setdefault(last, []).append(Program(predicate, _reader(start)))
-    if not all(program() for program in asked.get(-1, ())):
+        predicates_by_last.setdefault(last, []).append(Program(predicate, _reader(start)))
+    if not all(program() for program in predicates_by_last.get(-1, ())):
         raise ValueError("no state is initial")
     # Only elements that predicates read need a search.
     searched = sorted({place[element] for predicate in predicates for element in _read(predicate)})
     left: list[Iterator[int]] = []
     while len(left) < len(searched):
         left.append(iter(choices[order[searched[len(left)]]]))
-        while not _next(start, order[searched[len(left) - 1]], left[-1], asked.get(searched[len(left) - 1], [])):
+        while not _next(
+            start, order[searched[len(left) - 1]], left[-1], predicates_by_last.get(searched[len(left) - 1], [])
+        ):
             left.pop()
             if not left:
                 raise ValueError("no state is initial")

@@ -63,9 +63,9 @@ def step_in_words(text: str) -> StepInWords | None:
     return StepInWords(event_in_words(step), not step["kind"], step["reason"], data, bool(step["message"]))
 
 
-def event_in_words(found: re.Match[str]) -> str:
+def event_in_words(match: re.Match[str]) -> str:
     """Return the event of a match of EVENT, in the syntax of `explain`."""
-    return f"{_plain(found)}.{found['kind']}" if found["kind"] else _plain(found)
+    return f"{_plain(match)}.{match['kind']}" if match["kind"] else _plain(match)
 
 
 def data_in_words(text: str, position: int) -> Any:
@@ -83,5 +83,5 @@ def data_in_words(text: str, position: int) -> Any:
     return value
 
 
-def _plain(found: re.Match[str]) -> str:
-    return found["name"].replace("^", "")
+def _plain(match: re.Match[str]) -> str:
+    return match["name"].replace("^", "")

@@ -15,8 +15,8 @@ from robosc.model import expression as ex
 from robosc.model import robosc as rsc
 from robosc.model import rosgraph, sct
 from robosc.model.semantics.communication import data_type, event, section_of, sent_type
-from robosc.model.semantics.naming import written
-from robosc.model.semantics.operators import CONDITIONS, Operator, Rule, operator_of
+from robosc.model.semantics.naming import escape_keyword
+from robosc.model.semantics.operators import CONDITIONS, Operator, TypeRule, operator_of
 from robosc.model.semantics.walks import fold
 
 if TYPE_CHECKING:
@@ -64,12 +64,12 @@ class ObjectType:
         return unit.package, unit.rosType, section_of(unit)
 
     @property
-    def written(self) -> str:
+    def qualified_name(self) -> str:
         """Unambiguous name of the object in a model."""
         unit: Any = self.definition.eContainer()
         if isinstance(unit, rsc.InterfaceTypeReference):
             return f"{unit.package}/{unit.rosType}"
-        return written(self.definition.name)
+        return escape_keyword(self.definition.name)
 
     def __str__(self) -> str:
         return f"object {self.definition.name}"
@@ -176,13 +176,13 @@ def operator_type(row: Operator, operands: Sequence[Type]) -> Type:
         return UNKNOWN  # the rule `argument`
     if row.rule in CONDITIONS:
         return BOOLEAN
-    if row.rule is Rule.DOUBLE:
+    if row.rule is TypeRule.DOUBLE:
         return DOUBLE
-    if row.rule in {Rule.ROUNDING, Rule.SIZE}:
+    if row.rule in {TypeRule.ROUNDING, TypeRule.SIZE}:
         return INTEGER
-    if row.rule is Rule.INTEGER:
+    if row.rule is TypeRule.INTEGER:
         return INTEGER if {*operands} == {INTEGER} else UNKNOWN
-    if row.rule is Rule.ELEMENTS:
+    if row.rule is TypeRule.ELEMENTS:
         (array,) = operands
         return array.element if isinstance(array, ArrayType) and is_number(array.element) else UNKNOWN
     if row.metaclass is ex.Addition and {*operands} == {STRING}:

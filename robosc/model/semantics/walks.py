@@ -32,7 +32,7 @@ def operands(expression: ex.Expression | None) -> list[ex.Expression]:
         case engine.And() | engine.Or():
             return list(expression.operands)
         case robosc.ObjectValue():
-            return [given.value for given in expression.properties]
+            return [property_value.value for property_value in expression.properties]
         case rosgraph.ConversionCall():
             return [expression.argument]
         case rosgraph.IfReadable():
@@ -63,18 +63,18 @@ def _indices(step: robosc.AccessSegment | rosgraph.WireStep) -> list[ex.Expressi
     return []
 
 
-def with_operands(original: ex.Expression, given: Sequence[ex.Expression]) -> ex.Expression:
+def with_operands(original: ex.Expression, new_operands: Sequence[ex.Expression]) -> ex.Expression:
     """Return a copy of an expression's operator or function with other operands, which it contains."""
     kind: Any = type(original)
-    made: ex.Expression
+    copy: ex.Expression
     if isinstance(original, ex.FunctionCall):
-        made = kind(function=original.function, arguments=given)
+        copy = kind(function=original.function, arguments=new_operands)
     elif isinstance(original, ex.Conditional):
-        made = kind(**dict(zip(("condition", "then", "otherwise"), given, strict=True)))
+        copy = kind(**dict(zip(("condition", "then", "otherwise"), new_operands, strict=True)))
     else:
-        names = ("operand",) if len(given) == 1 else ("left", "right")
-        made = kind(**dict(zip(names, given, strict=True)))
-    return made
+        names = ("operand",) if len(new_operands) == 1 else ("left", "right")
+        copy = kind(**dict(zip(names, new_operands, strict=True)))
+    return copy
 
 
 def parts(expression: ex.Expression | None) -> Iterator[ex.Expression]:
@@ -131,7 +131,7 @@ def walk(
     result: Any = None
     while steps:
         try:
-            wanted = steps[-1].send(result)
+            child = steps[-1].send(result)
         except StopIteration as finished:
             result = finished.value
             steps.pop()
@@ -139,16 +139,16 @@ def walk(
             if memo is not None:
                 memo[node] = result
             continue
-        if memo is not None and wanted in memo:
-            result = memo[wanted]
+        if memo is not None and child in memo:
+            result = memo[child]
         else:
             result = None
-            nodes.append(wanted)
-            steps.append(step(wanted))
+            nodes.append(child)
+            steps.append(step(child))
     return result  # type: ignore[no-any-return]
 
 
-def copied(root: _Element, instead: Mapping[Any, Any] | None = None) -> _Element:
+def copy_tree(root: _Element, instead: Mapping[Any, Any] | None = None) -> _Element:
     """Return a deep copy of an expression or a type. The original stays in its container.
 
     `instead` maps elements that the original refers to to those that the copy refers to.
@@ -157,22 +157,22 @@ def copied(root: _Element, instead: Mapping[Any, Any] | None = None) -> _Element
     others = {} if instead is None else instead
 
     def copy(original: Any, children: list[Any]) -> Any:
-        made, inside = type(original)(), iter(children)
-        known[original] = made
+        clone, inside = type(original)(), iter(children)
+        known[original] = clone
         for name, feature in features(original.eClass).items():
             value = getattr(original, name)
             if value is None:
                 continue
             if is_attribute(feature):
-                setattr(made, name, value)
+                setattr(clone, name, value)
             elif not feature.containment:
                 # A reference to an element of an array refers to the copied element, which precedes it.
-                setattr(made, name, known[value] if value in known else others.get(value, value))
+                setattr(clone, name, known[value] if value in known else others.get(value, value))
             elif feature.many:
-                getattr(made, name).extend(next(inside) for _ in value)
+                getattr(clone, name).extend(next(inside) for _ in value)
             else:
-                setattr(made, name, next(inside))
-        return made
+                setattr(clone, name, next(inside))
+        return clone
 
-    made: _Element = fold(copy, root, lambda element: [child for _, child in contents(element)])
-    return made
+    clone: _Element = fold(copy, root, lambda element: [child for _, child in contents(element)])
+    return clone

@@ -37,9 +37,9 @@ def faults(root: Any) -> Iterator[Fault]:
     yield from faults_of(model, _CHECKS)
     for tables in (tables for kind, tables in _OWN_CHECKS.items() if isinstance(root, kind)):
         for checks in tables:
-            found = list(faults_of(model, checks))
-            yield from found
-            if found:
+            structural = list(faults_of(model, checks))
+            yield from structural
+            if structural:
                 return
 
 

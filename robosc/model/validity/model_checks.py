@@ -12,7 +12,7 @@ from typing import Any
 from robosc.model import expression as ex
 from robosc.model import robosc
 from robosc.model.reflection import tree
-from robosc.model.semantics.operators import Rule, operator_of
+from robosc.model.semantics.operators import TypeRule, operator_of
 from robosc.model.semantics.typing import BOOLEAN, DOUBLE, INTEGER, UNKNOWN, EnumType, Type, Types, is_number
 from robosc.model.semantics.walks import operands
 
@@ -33,11 +33,11 @@ class Model:
         """Elements as a set."""
         return set(self.elements)
 
-    def unlike(self, expression: ex.Expression, wanted: Type) -> Iterator[Fault]:
+    def unlike(self, expression: ex.Expression, expected: Type) -> Iterator[Fault]:
         """Report a fault if an expression does not have the wanted type."""
-        found = self.types(expression)
-        if UNKNOWN not in {found, wanted} and found != wanted:
-            yield expression, f"this is of {_named(found)}, expected {_named(wanted)}"
+        actual = self.types(expression)
+        if UNKNOWN not in {actual, expected} and actual != expected:
+            yield expression, f"this is of {_named(actual)}, expected {_named(expected)}"
 
 
 Check = Callable[[Any, Model], Iterable[Fault]]
@@ -50,7 +50,12 @@ def faults_of(model: Model, checks: Checks) -> Iterator[Fault]:
     for element in model.elements:
         kind = type(element)
         if kind not in by_class:
-            by_class[kind] = [check for asked, found in checks.items() if issubclass(kind, asked) for check in found]
+            by_class[kind] = [
+                check
+                for checked_kind, checks_of_kind in checks.items()
+                if issubclass(kind, checked_kind)
+                for check in checks_of_kind
+            ]
         for check in by_class[kind]:
             yield from check(element, model)
 
@@ -65,13 +70,13 @@ def demand(holds: Callable[[Any], bool], message: str) -> Check:
     return check
 
 
-def typed(feature: str, wanted: Callable[[Any], Type] = lambda _: BOOLEAN) -> Check:
-    """Return the check that the expression in a feature, if any, has the type that `wanted` returns for the element."""
+def check_type(feature: str, expected_of: Callable[[Any], Type] = lambda _: BOOLEAN) -> Check:
+    """Return the check that the expression in a feature, if any, has the type of `expected_of(element)`."""
 
     def check(element: Any, model: Model) -> Iterator[Fault]:
         value = getattr(element, feature)
         if value is not None:
-            yield from model.unlike(value, wanted(element))
+            yield from model.unlike(value, expected_of(element))
 
     return check
 
@@ -81,13 +86,13 @@ def unique(*features: str) -> Check:
 
     def check(element: Any, _model: Model) -> Iterator[Fault]:
         for feature in features:
-            for named in repeated(getattr(element, feature), lambda named: named.name):
+            for named in find_duplicates(getattr(element, feature), lambda named: named.name):
                 yield named, f"the name '{named.name}' is used twice"
 
     return check
 
 
-def repeated(elements: Iterable[Any], key: Callable[[Any], Any]) -> Iterator[Any]:
+def find_duplicates(elements: Iterable[Any], key: Callable[[Any], Any]) -> Iterator[Any]:
     """Iterate over the elements that have the key of an earlier one."""
     seen = set()
     for element in elements:
@@ -98,37 +103,42 @@ def repeated(elements: Iterable[Any], key: Callable[[Any], Any]) -> Iterator[Any
 
 def around(element: Any, kind: type) -> Any:
     """Return the nearest container of a class around an element, or None."""
-    found = element.eContainer()
-    while found is not None and not isinstance(found, kind):
-        found = found.eContainer()
-    return found
+    container = element.eContainer()
+    while container is not None and not isinstance(container, kind):
+        container = container.eContainer()
+    return container
 
 
-_WANTED = {Rule.LOGICAL: BOOLEAN, Rule.DOUBLE: DOUBLE, Rule.INTEGER: INTEGER, Rule.ROUNDING: DOUBLE}
+_OPERAND_TYPES = {
+    TypeRule.LOGICAL: BOOLEAN,
+    TypeRule.DOUBLE: DOUBLE,
+    TypeRule.INTEGER: INTEGER,
+    TypeRule.ROUNDING: DOUBLE,
+}
 
 
 def fitting_operands(expression: ex.Expression, model: Model) -> Iterator[Fault]:
     """Check the operators of an sct or rosgraph model, whose operands all have one type."""
-    row, given = operator_of(expression), operands(expression)
+    row, parts = operator_of(expression), operands(expression)
     if isinstance(expression, (robosc.Access, robosc.ObjectValue)):
         yield expression, f"{type(expression).__name__} is allowed only in a robosc model"
     elif isinstance(expression, ex.Conditional):
         yield from model.unlike(expression.condition, BOOLEAN)
-        yield from _differ(expression, given[1:], model)
-    elif row is not None and row.rule in _WANTED:
-        wanted = INTEGER if isinstance(expression, ex.DoubleConversion) else _WANTED[row.rule]
-        for operand in given:
-            yield from model.unlike(operand, wanted)
-    elif row is not None and row.rule not in {Rule.SIZE, Rule.ELEMENTS}:
-        faults = [*_differ(expression, given, model)]
+        yield from _differ(expression, parts[1:], model)
+    elif row is not None and row.rule in _OPERAND_TYPES:
+        expected = INTEGER if isinstance(expression, ex.DoubleConversion) else _OPERAND_TYPES[row.rule]
+        for operand in parts:
+            yield from model.unlike(operand, expected)
+    elif row is not None and row.rule not in {TypeRule.SIZE, TypeRule.ELEMENTS}:
+        faults = [*_differ(expression, parts, model)]
         yield from faults
-        found = model.types(given[0])
-        if row.rule is not Rule.EQUALITY and not faults and not is_number(found) and found != UNKNOWN:
-            yield expression, f"expected numbers, found {_named(found)}"
+        actual = model.types(parts[0])
+        if row.rule is not TypeRule.EQUALITY and not faults and not is_number(actual) and actual != UNKNOWN:
+            yield expression, f"expected numbers, found {_named(actual)}"
 
 
-def _differ(expression: ex.Expression, given: Iterable[ex.Expression], model: Model) -> Iterator[Fault]:
-    kinds = [kind for kind in map(model.types, given) if kind != UNKNOWN]
+def _differ(expression: ex.Expression, expressions: Iterable[ex.Expression], model: Model) -> Iterator[Fault]:
+    kinds = [kind for kind in map(model.types, expressions) if kind != UNKNOWN]
     if len(set(kinds)) > 1:
         yield expression, f"the operands are of {_named(kinds[0])} and {_named(kinds[1])}, not of one type"
 

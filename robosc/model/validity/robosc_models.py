@@ -21,22 +21,24 @@ if TYPE_CHECKING:
     from robosc.model.validity.model_checks import Checks, Fault, Model
 
 
-def _made(made: robosc.InstantiatedComponent | robosc.ImportedComponent, _model: Model) -> Iterator[Fault]:
-    user = around(made, robosc.Component)
+def _check_instance(
+    instantiation: robosc.InstantiatedComponent | robosc.ImportedComponent, _model: Model
+) -> Iterator[Fault]:
+    user = around(instantiation, robosc.Component)
     if user is not None and user.parameters:
-        yield made, f"the template '{user.name}' has no content of its own"
+        yield instantiation, f"the template '{user.name}' has no content of its own"
         return
-    seen, component = {user}, made.definition
+    seen, component = {user}, instantiation.definition
     while isinstance(component.type, robosc.InstantiatedComponent | robosc.ImportedComponent):
         if component in seen:
-            yield made, f"'{component.name}' contains itself"
+            yield instantiation, f"'{component.name}' contains itself"
             return
         seen.add(component)
         component = component.type.definition
-    if isinstance(made, robosc.ImportedComponent):
-        yield from _import(made)
-    elif not made.definition.parameters:
-        yield made, f"'{made.definition.name}' is not a template"
+    if isinstance(instantiation, robosc.ImportedComponent):
+        yield from _import(instantiation)
+    elif not instantiation.definition.parameters:
+        yield instantiation, f"'{instantiation.definition.name}' is not a template"
 
 
 def _import(imported: robosc.ImportedComponent) -> Iterator[Fault]:
@@ -157,7 +159,7 @@ _OWN_OBJECT = demand(
 )
 
 #: The other checks follow imports. They are skipped if an import is broken.
-IMPORT_CHECKS: Checks = {robosc.InstantiatedComponent: [_made], robosc.ImportedComponent: [_made]}
+IMPORT_CHECKS: Checks = {robosc.InstantiatedComponent: [_check_instance], robosc.ImportedComponent: [_check_instance]}
 CHECKS: Checks = {
     robosc.Transition: [_OWN_TARGET],
     robosc.CommunicationReference: [_communication],

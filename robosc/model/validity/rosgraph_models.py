@@ -14,7 +14,7 @@ from robosc.model.reflection import tree
 from robosc.model.semantics.failures import FAILURES
 from robosc.model.semantics.messages import EACH, path_of, reads_elements, source_of
 from robosc.model.semantics.typing import BOOLEAN, declared_type, infer
-from robosc.model.validity.model_checks import demand, fitting_operands, typed
+from robosc.model.validity.model_checks import check_type, demand, fitting_operands
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -31,9 +31,9 @@ def _own_event(element: Any, model: Model) -> Iterator[Fault]:
         yield element, f"the event '{event.name}' belongs to another model"
 
 
-def _interface(wanted: rosgraph.InterfaceKind) -> Check:
-    message = f"'{{0.interface.type}}' is a {{0.interface.kind}}, expected a {wanted}"
-    return demand(lambda user: user.interface.kind == wanted, message)
+def _interface(kind: rosgraph.InterfaceKind) -> Check:
+    message = f"'{{0.interface.type}}' is a {{0.interface.kind}}, expected a {kind}"
+    return demand(lambda user: user.interface.kind == kind, message)
 
 
 def _literals(conversion: rosgraph.Conversion, _model: Model) -> Iterator[Fault]:
@@ -48,17 +48,17 @@ def _inputs(reception: rosgraph.Reception, _model: Model) -> Iterator[Fault]:
             yield assignment, f"'{reception.event.name}' does not carry the input '{assignment.input.name}'"
 
 
-def _reason(read: rosgraph.ErrorReason, _model: Model) -> Iterator[Fault]:
+def _reason(reason: rosgraph.ErrorReason, _model: Model) -> Iterator[Fault]:
     """Check that a reason is read only at an error, and that its enumeration has all reasons of the node."""
-    user = read.eContainer()
+    user = reason.eContainer()
     while isinstance(user, ex.Expression | rosgraph.NodeAssignment | rosgraph.InputAssignment):
         user = user.eContainer()
     event = user.event if isinstance(user, rosgraph.Reaction | rosgraph.Reception) else None
     if event is None or event.kind != sct.EventKind.error:
-        yield read, "a reason can be read only at the error of a service or an action"
-    missing = {*FAILURES} - {literal.name for literal in read.enumeration.literals}
+        yield reason, "a reason can be read only at the error of a service or an action"
+    missing = {*FAILURES} - {literal.name for literal in reason.enumeration.literals}
     if missing:
-        yield read, f"{read.enumeration.name} has no literal '{min(missing)}'"
+        yield reason, f"{reason.enumeration.name} has no literal '{min(missing)}'"
 
 
 class _Shape:
@@ -85,8 +85,8 @@ class _Shape:
 
 def _converted_shape(conversion: rosgraph.Conversion, _model: Model) -> Iterator[Fault]:
     shape = _Shape()
-    for read in _reads(rule.condition for rule in conversion.rules):
-        yield from shape.add(read, _path(read), read.type)
+    for access in _reads(rule.condition for rule in conversion.rules):
+        yield from shape.add(access, _path(access), access.type)
 
 
 def _sent_shape(sending: rosgraph.Sending, _model: Model) -> Iterator[Fault]:
@@ -118,7 +118,7 @@ def _received_shapes(graph: rosgraph.RosGraph, _model: Model) -> Iterator[Fault]
                 yield from _received(shape, access)
     for event, values in reactions.items():
         if event not in read_anywhere:
-            yield from ((read, f"'{event.name}' has no data") for read in _reads(values))
+            yield from ((access, f"'{event.name}' has no data") for access in _reads(values))
 
 
 def _received(shape: _Shape, access: rosgraph.WireAccess) -> Iterator[Fault]:
@@ -128,14 +128,14 @@ def _received(shape: _Shape, access: rosgraph.WireAccess) -> Iterator[Fault]:
     yield from shape.add(access, path, access.type)
     owner = access.eContainer()
     if isinstance(owner, rosgraph.ConversionCall):
-        for read in _reads(rule.condition for rule in owner.conversion.rules):
-            yield from shape.add(access, [*path, *_path(read)], read.type)
+        for inner in _reads(rule.condition for rule in owner.conversion.rules):
+            yield from shape.add(access, [*path, *_path(inner)], inner.type)
 
 
 def _reads(values: Iterable[ex.Expression]) -> Iterator[rosgraph.WireAccess]:
     for value in values:
-        found = (access for _, access in tree(value) if isinstance(access, rosgraph.WireAccess))
-        yield from (access for access in found if source_of(access) is None)
+        accesses = (access for _, access in tree(value) if isinstance(access, rosgraph.WireAccess))
+        yield from (access for access in accesses if source_of(access) is None)
 
 
 def _path(access: rosgraph.WireAccess) -> list[str | int]:
@@ -178,16 +178,16 @@ CHECKS: Checks = {
     ex.Expression: [fitting_operands],
     object: [_own_event],
     rosgraph.RosGraph: [_received_shapes],
-    rosgraph.NodeVariable: [typed("initial", lambda variable: declared_type(variable.type))],
-    rosgraph.FieldAssignment: [typed("value", lambda field: declared_type(field.type)), _FIELD],
-    rosgraph.InputAssignment: [typed("value", lambda assignment: declared_type(assignment.input.type))],
-    rosgraph.NodeAssignment: [typed("value", lambda assignment: declared_type(assignment.variable.type))],
-    rosgraph.ConversionRule: [typed("condition")],
+    rosgraph.NodeVariable: [check_type("initial", lambda variable: declared_type(variable.type))],
+    rosgraph.FieldAssignment: [check_type("value", lambda field: declared_type(field.type)), _FIELD],
+    rosgraph.InputAssignment: [check_type("value", lambda assignment: declared_type(assignment.input.type))],
+    rosgraph.NodeAssignment: [check_type("value", lambda assignment: declared_type(assignment.variable.type))],
+    rosgraph.ConversionRule: [check_type("condition")],
     rosgraph.Conversion: [_literals, _converted_shape],
     rosgraph.Reception: [_inputs],
     rosgraph.Sending: [_sent_shape],
     rosgraph.ProvidedData: [_DATA],
-    rosgraph.Reaction: [_ONE_PLANT, typed("guard", lambda _: BOOLEAN)],
+    rosgraph.Reaction: [_ONE_PLANT, check_type("guard", lambda _: BOOLEAN)],
     rosgraph.Subscription: [_interface(rosgraph.InterfaceKind.message)],
     rosgraph.Publisher: [_interface(rosgraph.InterfaceKind.message)],
     rosgraph.ServiceClient: [_interface(rosgraph.InterfaceKind.service)],

@@ -14,7 +14,7 @@ from robosc.model.semantics.edges import edges_of
 from robosc.model.semantics.operators import FUNCTIONS
 from robosc.model.semantics.roles import is_from_cif
 from robosc.model.semantics.typing import BOOLEAN, declared_type
-from robosc.model.validity.model_checks import around, demand, fitting_operands, repeated, typed, unique
+from robosc.model.validity.model_checks import around, check_type, demand, find_duplicates, fitting_operands, unique
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -49,8 +49,8 @@ def _end_of_action(plant: sct.Plant, _model: Model) -> Iterator[Fault]:
     """Check that an action does not end when it is canceled, as it did in models of the first two editions."""
     ended = (edge for edge in edges_of(plant) if edge.event.kind == sct.EventKind.cancel and edge.target.name == IDLE)
     if plant.kind == sct.PlantKind.action and any(ended):
-        found = f"the action '{plant.origin or plant.name}' ends where it is canceled, as in older models"
-        yield plant, f"{found}; generate this model again from its text: `robosc transform MODEL.rscd --to xmi`"
+        message = f"the action '{plant.origin or plant.name}' ends where it is canceled, as in older models"
+        yield plant, f"{message}; generate this model again from its text: `robosc transform MODEL.rscd --to xmi`"
 
 
 def _initial_value(variable: sct.DiscreteVariable, model: Model) -> Iterator[Fault]:
@@ -91,7 +91,7 @@ def _predicates(model: sct.SupervisoryControlModel, checked: Model) -> Iterator[
 def _unguarded(edges: Iterable[sct.Edge]) -> list[sct.Edge]:
     """Return the edges after the first for an event that has several edges and one without guard."""
     lone = {edge.event for edge in edges if edge.guard is None}
-    return [edge for edge in repeated(edges, lambda edge: edge.event) if edge.event in lone]
+    return [edge for edge in find_duplicates(edges, lambda edge: edge.event) if edge.event in lone]
 
 
 def _carried(event: sct.Event, _model: Model) -> Iterator[Fault]:
@@ -101,7 +101,7 @@ def _carried(event: sct.Event, _model: Model) -> Iterator[Fault]:
 
 
 def _updated_once(edge: sct.Edge, _model: Model) -> Iterator[Fault]:
-    for update in repeated(edge.updates, lambda update: update.variable):
+    for update in find_duplicates(edge.updates, lambda update: update.variable):
         yield update, f"the variable '{update.variable.name}' is updated twice"
 
 
@@ -222,7 +222,11 @@ CHECKS: Checks = {
     sct.Plant: [unique("events", "inputs", "variables", "locations"), _initial_location, _one_edge, _end_of_action],
     object: [_references],
     sct.Input: [_PLAIN],
-    sct.DiscreteVariable: [_PLAIN, typed("initial", lambda variable: declared_type(variable.type)), _initial_value],
+    sct.DiscreteVariable: [
+        _PLAIN,
+        check_type("initial", lambda variable: declared_type(variable.type)),
+        _initial_value,
+    ],
     ex.IntegerType: [_bounds],
     ex.EnumerationType: [_part],
     ex.DoubleLiteral: [_FOREIGN],
@@ -233,13 +237,13 @@ CHECKS: Checks = {
     sct.Event: [_carried, _TIMED],
     sct.Timer: [_timer],
     sct.Duration: [_SETTABLE],
-    sct.Edge: [_OWN_TARGET, typed("guard"), _updated_once],
-    sct.Update: [_OWN_VARIABLE, typed("value", lambda update: declared_type(update.variable.type))],
-    sct.Requirement: [_RESTRICTABLE, typed("condition")],
-    sct.StateInvariant: [typed("condition")],
-    sct.Property: [typed("condition")],
-    sct.ReachabilityProperty: [typed("premise")],
-    sct.EventGuard: [_CONTROLLABLE, typed("requirement"), typed("synthesis")],
+    sct.Edge: [_OWN_TARGET, check_type("guard"), _updated_once],
+    sct.Update: [_OWN_VARIABLE, check_type("value", lambda update: declared_type(update.variable.type))],
+    sct.Requirement: [_RESTRICTABLE, check_type("condition")],
+    sct.StateInvariant: [check_type("condition")],
+    sct.Property: [check_type("condition")],
+    sct.ReachabilityProperty: [check_type("premise")],
+    sct.EventGuard: [_CONTROLLABLE, check_type("requirement"), check_type("synthesis")],
     sct.InputReference: [_read],
-    sct.Supervisor: [_guards, typed("initial")],
+    sct.Supervisor: [_guards, check_type("initial")],
 }

@@ -109,8 +109,8 @@ class Document:
             known = ", ".join(packages()[root].nsURI for root in ROOTS)
             self.report(top.span, f"no model of RoboSC has the namespace '{top.namespace}'", f"known are {known}")
         elif top.name not in ROOTS.get(package.name, ()):
-            wanted = ", ".join(name for names in ROOTS.values() for name in names)
-            self.report(top.span, f"a {top.name} cannot be the root of a file", f"expected {wanted}")
+            alternatives = ", ".join(name for names in ROOTS.values() for name in names)
+            self.report(top.span, f"a {top.name} cannot be the root of a file", f"expected {alternatives}")
         else:
             return package.getEClassifier(top.name)
         return None
@@ -118,13 +118,13 @@ class Document:
     def _fill(self, markup: Element, element: Any) -> list[tuple[Element, Any]]:
         """Set the features of an element. Create its children and return them."""
         declared, named = features(element.eClass), a(element.eClass)
-        given = Counter(self._fill_attributes(markup, element))
-        children = list(self._fill_children(markup, element, given))
+        counts = Counter(self._fill_attributes(markup, element))
+        children = list(self._fill_children(markup, element, counts))
         if markup.text.strip():
             self.report(markup.span, f"{named} cannot have text")
         for name, feature in declared.items():
             # Features that EMF omits have a default: a boolean, a number, the first literal of an enumeration.
-            if feature.lowerBound and name not in given and (feature.many or getattr(element, name) is None):
+            if feature.lowerBound and name not in counts and (feature.many or getattr(element, name) is None):
                 self.report(markup.span, f"{named} needs '{name}'")
         return children
 
@@ -146,10 +146,10 @@ class Document:
             else:
                 self.references += [Reference(element, feature, f"#{target}", where) for target in text.split()]
 
-    def _fill_children(self, markup: Element, element: Any, given: Counter[str]) -> Iterator[tuple[Element, Any]]:
+    def _fill_children(self, markup: Element, element: Any, counts: Counter[str]) -> Iterator[tuple[Element, Any]]:
         """Set the features that child elements hold, and yield the children that are model elements.
 
-        `given` counts the values of each feature.
+        `counts` counts the values of each feature.
         """
         for child in markup.children:
             feature = None if child.namespace else features(element.eClass).get(child.name)
@@ -157,8 +157,8 @@ class Document:
             if feature is None:
                 self.report(where(), f"{a(element.eClass)} has no '{child.name}'")
                 continue
-            given[child.name] += 1
-            if given[child.name] > 1 and not feature.many:
+            counts[child.name] += 1
+            if counts[child.name] > 1 and not feature.many:
                 self.report(where(), f"{a(element.eClass)} has only one '{child.name}'")
             elif is_attribute(feature):
                 self._set(element, feature, child.text, where)
@@ -166,25 +166,25 @@ class Document:
                 target = child.attributes.get(("", "href"), "")
                 self.references.append(Reference(element, feature, target, where))
             elif (metaclass := self._child_class(child, feature)) is not None:
-                made = metaclass.python_class()
-                _put(element, feature, made)
-                yield child, made
+                child_element = metaclass.python_class()
+                _put(element, feature, child_element)
+                yield child, child_element
 
     def _child_class(self, child: Element, feature: Any) -> Any:
         """Return the class of a child: the class that it names, else its feature's.
 
         If it is invalid, report it and return None.
         """
-        found = feature.eType if child.type is None else _classifier(*child.type)
-        if found is None or not isinstance(found, EClass):
+        classifier = feature.eType if child.type is None else _classifier(*child.type)
+        if classifier is None or not isinstance(classifier, EClass):
             written = child.attributes.get((XSI, "type"))
             self.report(child.attribute_span("xsi:type"), f"unknown class '{written}'")
-        elif not issubclass(found.python_class, feature.eType.python_class):
-            self.report(child.span, f"'{feature.name}' expects {a(feature.eType)}, found {a(found)}")
-        elif found.abstract:
-            self.report(child.span, f"{found.name} is abstract", "write its class with xsi:type")
+        elif not issubclass(classifier.python_class, feature.eType.python_class):
+            self.report(child.span, f"'{feature.name}' expects {a(feature.eType)}, found {a(classifier)}")
+        elif classifier.abstract:
+            self.report(child.span, f"{classifier.name} is abstract", "write its class with xsi:type")
         else:
-            return found
+            return classifier
         return None
 
     def _set(self, element: Any, feature: Any, text: str, where: Callable[[], Span]) -> None:
@@ -219,7 +219,7 @@ class _Loading:
     def _stop_if_wrong(self) -> None:
         documents = self._documents.values()
         findings = [
-            finding for document in documents for finding in sorted(document.findings, key=lambda found: found.span)
+            finding for document in documents for finding in sorted(document.findings, key=lambda item: item.span)
         ]
         if findings:
             raise ModelError(findings)
@@ -243,7 +243,7 @@ class _Loading:
 
     def _referred(self, document: Document) -> list[Document]:
         """Return the files that a file refers to and that are not read yet."""
-        found = []
+        documents = []
         for reference in document.references:
             href = unquote(reference.target.partition("#")[0])
             if not href or (document, href) in self._sought:
@@ -257,8 +257,8 @@ class _Loading:
                 document.report(reference.where(), f"the file '{href}' does not exist")
             elif path not in self._documents:
                 name = (PurePosixPath(document.name).parent / href).as_posix()
-                found.append(self._documents.setdefault(path, Document(name, path, self.sources)))
-        return found
+                documents.append(self._documents.setdefault(path, Document(name, path, self.sources)))
+        return documents
 
     def _path(self, document: Document, href: str) -> Path | None:
         """Return the path of a relative href. None if it leaves the folder."""

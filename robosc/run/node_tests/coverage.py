@@ -41,7 +41,7 @@ def goals(loop: ControlLoop) -> list[Goal]:
 
     A guard that is literally `true` has no goal of being false. Later alternatives of such a choice have no goals.
     """
-    found = []
+    result = []
     never_asked = {
         alternative.event
         for choice in loop.engine.executed.choices
@@ -52,28 +52,28 @@ def goals(loop: ControlLoop) -> list[Goal]:
         if plant.kind == sct.PlantKind.behaviour:
             for edge in edges_of(plant):
                 if edge.source is not None:
-                    found += [Goal(edge), *([] if edge.guard is None else [Goal(edge, value=False)])]
+                    result += [Goal(edge), *([] if edge.guard is None else [Goal(edge, value=False)])]
     events = {event_name(event): event for plant in loop.engine.model.plants for event in plant.events}
     for executed in loop.engine.executed.events:
         if executed.role in (*_QUEUED, _SILENT, en.Role.data) and executed not in never_asked:
             event = events[executed.name]
-            found += [Goal(event), *([Goal(event, value=False)] if executed.guard.terms else [])]
-            found += [Goal(event, value=False, cause=cause) for cause in causes(loop.engine.model, event)]
-    return found
+            result += [Goal(event), *([Goal(event, value=False)] if executed.guard.terms else [])]
+            result += [Goal(event, value=False, cause=cause) for cause in causes(loop.engine.model, event)]
+    return result
 
 
 def causes(model: sct.SupervisoryControlModel, event: sct.Event) -> list[ex.Expression]:
     """Return the conditions that the requirements on an event join by `and`; none if there is only one."""
     supervisor = model.supervisor
     required = [guard.requirement for guard in supervisor.guards if guard.event is event] if supervisor else []
-    pending, found = [condition for condition in required if condition is not None], []
+    pending, conditions = [condition for condition in required if condition is not None], []
     while pending:
         condition = pending.pop()
         if isinstance(condition, ex.Conjunction):
             pending += (condition.right, condition.left)
         else:
-            found.append(condition)
-    return found if len(found) > 1 else []
+            conditions.append(condition)
+    return conditions if len(conditions) > 1 else []
 
 
 class Watcher:
@@ -88,27 +88,27 @@ class Watcher:
         self._queued = [event.name for event in executed.events if event.role in _QUEUED]
         self._silent = [event.name for event in executed.events if event.role == _SILENT]
         self._causes = {
-            name: found for name in self._queued if (found := causes(loop.engine.model, self._events[name]))
+            name: conditions for name in self._queued if (conditions := causes(loop.engine.model, self._events[name]))
         }
         self._choices = [[alternative.event.name for alternative in choice.alternatives] for choice in executed.choices]
         self._seen_at_rest: dict[tuple[int, ...], frozenset[Goal]] = {}
 
     def before_event(self, event: str) -> Iterator[Goal]:
         """Yield the goals that an enabled event reaches as it happens, with the inputs that are set."""
-        seen = [Goal(edge, taken) for edge, taken in self._transitions.tried(event)]
+        seen = [Goal(edge, taken) for edge, taken in self._transitions.attempts(event)]
         yield from (goal for goal in [*seen, Goal(self._events[event])] if goal in self._goals)
 
     def at_rest(self) -> frozenset[Goal]:
         """Return the goals reached when the control loop has settled: then it has evaluated all guards."""
         cells, _ = self._engine.saved
         if cells not in self._seen_at_rest:
-            asked = [(event, self._engine.enabled(event)) for event in (*self._queued, *self._silent)]
+            decisions = [(event, self._engine.enabled(event)) for event in (*self._queued, *self._silent)]
             for alternatives in self._choices:
                 for event in alternatives:
-                    asked.append((event, self._engine.enabled(event)))
-                    if asked[-1][1]:
+                    decisions.append((event, self._engine.enabled(event)))
+                    if decisions[-1][1]:
                         break  # later alternatives are not evaluated
-            seen = [Goal(self._events[event], value) for event, value in asked]
+            seen = [Goal(self._events[event], value) for event, value in decisions]
             self._seen_at_rest[cells] = frozenset([*seen, *self._alone()])
         return self._seen_at_rest[cells]
 

@@ -21,13 +21,13 @@ if TYPE_CHECKING:
     from robosc.base.ros_types import RosDistribution
     from robosc.language.configuration import Configuration
     from robosc.model import rosgraph, sct
-    from robosc.run.node_tests.samples import Incoming
+    from robosc.run.node_tests.samples import IncomingKind
     from robosc.run.runtime.core.clients import ActionClient, ServiceClient
 
     #: Function that lets data come in and returns its fields, None if it has none.
     Act = Callable[[], "dict[str, Any] | None"]
 
-_Made = TypeVar("_Made", bound="DrivenController")
+_Controller = TypeVar("_Controller", bound="DrivenController")
 
 _DAY = 24 * 3600 * 1000
 #: Milliseconds after its time at which a timer has certainly expired.
@@ -61,10 +61,10 @@ class _Lines(EventLog):
 
     def __init__(self) -> None:
         super().__init__("")
-        self.kept: list[str] = []
+        self.lines: list[str] = []
 
     def append(self, line: str) -> None:
-        self.kept.append(line.removesuffix("\n"))
+        self.lines.append(line.removesuffix("\n"))
 
 
 class DrivenController(Controller):
@@ -82,7 +82,7 @@ class DrivenController(Controller):
         """Return whether the data of a message that the transitions of the present state need can be read."""
         try:
             for reception in receptions:
-                self._data.received(reception.event, reception.inputs, data)
+                self._data.receive(reception.event, reception.inputs, data)
         except UnreadableError:
             return False
         return True
@@ -100,7 +100,7 @@ class DrivenController(Controller):
 
 
 class Drive:
-    """Runs of one controller, one after the other; `_lines.kept` is the trace of the present run."""
+    """Runs of one controller, one after the other; `_lines.lines` is the trace of the present run."""
 
     _controller: DrivenController
 
@@ -111,9 +111,9 @@ class Drive:
         self.parameters = parameters(graph, configuration)
         self._period = self.parameters["period_ms"] / 1000
         #: Reads and sample messages of each incoming event; the events of one topic share them.
-        self.incoming: dict[sct.Event, Incoming] = all_incoming(graph, distribution)
+        self.incoming: dict[sct.Event, IncomingKind] = all_incoming(graph, distribution)
 
-    def _begin(self, kind: type[_Made]) -> _Made:
+    def _begin(self, kind: type[_Controller]) -> _Controller:
         """Create the controller of a new run, without starting it."""
         self._pace = Pace(self._period)
         self._now = START * self._period
@@ -126,12 +126,12 @@ class Drive:
         return controller
 
     def _let_in(self, act: Act) -> None:
-        before = len(self._lines.kept)
+        before = len(self._lines.lines)
         sent = act()
         self._work()
-        if sent is not None and len(self._lines.kept) > before:
-            line = self._lines.kept[before]
-            self._lines.kept[before] = f'{line[:-1]},"message":{json_text(sent)}}}'
+        if sent is not None and len(self._lines.lines) > before:
+            line = self._lines.lines[before]
+            self._lines.lines[before] = f'{line[:-1]},"message":{json_text(sent)}}}'
 
     def _pass_period(self) -> None:
         """Let a period pass as the player does: the clock stops where a timer expires on the way.

@@ -43,21 +43,21 @@ class Guide:
         self._encoding = encoding
         self._data = data
         self._system = GuardedSystem(model, encoding)
-        found = {goal: self._states(goal) & self._system.controlled for goal in goals}
-        self._where = {goal: states for goal, states in found.items() if states.satisfiable()}
+        states_by_goal = {goal: self._states(goal) & self._system.controlled for goal in goals}
+        self._where = {goal: states for goal, states in states_by_goal.items() if states.satisfiable()}
 
     @property
     def possible(self) -> set[Goal]:
         """The goals that some reachable state shows."""
         return set(self._where)
 
-    def way(self, codes: Mapping[sct.Plant | sct.DiscreteVariable, int], wanted: Iterable[Goal]) -> Way:
+    def way(self, codes: Mapping[sct.Plant | sct.DiscreteVariable, int], goals: Iterable[Goal]) -> Way:
         """Return a shortest path from a state to another in which a wanted goal is visible.
 
         Goals that are visible in the present state, and were not seen, are not searched for.
         """
         here = dict.fromkeys((domain.element for domain in self._encoding.layout.state), 0) | dict(codes)
-        known = {goal: self._where[goal] for goal in wanted if goal in self._where}
+        known = {goal: self._where[goal] for goal in goals if goal in self._where}
         elsewhere = [states for states in known.values() if not self._system.is_in(here, states)]
         path = self._system.layers_from(here).path_to(self._encoding.diagrams.any_of(elsewhere))
         if path is None:
@@ -76,8 +76,8 @@ class Guide:
             ready = self._system.relations[goal.of].enabled
             return all_of([*at_rest, ready, ~self._encoding.holds(goal.cause), *others])
         if isinstance(goal.of, sct.Event):
-            asked = all_of([*at_rest, *(~allowed[other] for other in earlier(event))])
-            return asked & (allowed[event] if goal.value else ~allowed[event])
+            waiting_states = all_of([*at_rest, *(~allowed[other] for other in earlier(event))])
+            return waiting_states & (allowed[event] if goal.value else ~allowed[event])
         holds = self._encoding.holds(goal.of.guard)
         tried = [~self._encoding.holds(edge.guard) for edge in tried_before(goal.of)]
         some = self._with_some_data(event, all_of([holds if goal.value else ~holds, *tried]))
@@ -87,18 +87,19 @@ class Guide:
         """Return the states in which a condition holds with some possible data of the event."""
         if not event.inputs:
             return condition
-        levels = [level for given in event.inputs for level in self._encoding.layout.domains[given].levels]
-        found = self._encoding.diagrams.any_of(
+        levels = [level for event_input in event.inputs for level in self._encoding.layout.domains[event_input].levels]
+        choices = self._encoding.diagrams.any_of(
             self._encoding.diagrams.all_of(
-                self._encoding.has_code(given, _code(given, inputs[given.name])) for given in event.inputs
+                self._encoding.has_code(event_input, _code(event_input, inputs[event_input.name]))
+                for event_input in event.inputs
             )
             for inputs in self._data.get(event_name(event), ())
         )
-        return (condition & found).exists(self._encoding.diagrams.cube(levels))
+        return (condition & choices).exists(self._encoding.diagrams.cube(levels))
 
 
-def _code(given: sct.Input, value: Value) -> int:
-    domain = Domain(given.type)
+def _code(event_input: sct.Input, value: Value) -> int:
+    domain = Domain(event_input.type)
     return domain.internal(value) - domain.low
 
 

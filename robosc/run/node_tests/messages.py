@@ -7,10 +7,10 @@ from itertools import product
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
-from robosc.base.ros_types.wire import Basic, DefinitionError, Nested, Section, Sequence
+from robosc.base.ros_types.wire import Basic, DefinitionError, NestedType, Section, Sequence
 from robosc.model import expression as ex
 from robosc.model import rosgraph
-from robosc.model.semantics.messages import EACH, Read, holds_objects, parts_of, path_of
+from robosc.model.semantics.messages import EACH, MessageRead, holds_objects, parts_of, path_of
 from robosc.model.semantics.messages import reads as all_reads
 from robosc.run.runtime.core.node_data import BLANK
 
@@ -89,24 +89,24 @@ class Definition:
 
     def field(self, path: Path, kind: ex.Type) -> Field:
         """Return the field at the end of a path, of a type in the model."""
-        found = self._reached(path)
-        length = found.length if isinstance(found, Sequence) else None
+        reached = self._reached(path)
+        length = reached.length if isinstance(reached, Sequence) else None
         if isinstance(kind, rosgraph.ArrayType):
-            found = self._reached((*path, "0"))
-        if not isinstance(found, Basic):
+            reached = self._reached((*path, "0"))
+        if not isinstance(reached, Basic):
             return Field(kind, None, length=length)
-        is_double = isinstance(kind, ex.DoubleType) and isinstance(found.initial, int)
-        return Field(kind, found.name, float(found.initial) if is_double else found.initial, length)
+        is_double = isinstance(kind, ex.DoubleType) and isinstance(reached.initial, int)
+        return Field(kind, reached.name, float(reached.initial) if is_double else reached.initial, length)
 
     def initial(self, fields: Mapping[Path, Field]) -> dict[Path, Leaf]:
         """Return the elements of arrays in a new message, if they have a fixed length or a default."""
-        found: dict[Path, Leaf] = {}
+        elements: dict[Path, Leaf] = {}
         for path, field in fields.items():
             for way in self._ways(path):
                 value = self.field(way, field.type).default
                 if any(step.isdigit() for step in way) and isinstance(value, bool | int | float | str):
-                    found[way] = value
-        return found
+                    elements[way] = value
+        return elements
 
     def _ways(self, path: Path, before: Path = ()) -> Iterator[Path]:
         """Yield the path with its indices replaced by each combination of indices of a new message."""
@@ -119,18 +119,20 @@ class Definition:
                 yield from self._ways(path[1:], (*before, str(index)))
 
     def _reached(self, path: Path) -> WireType | None:
-        found = self.distribution.reached(self.interface.package, self.interface.type, self.section, path)
-        return None if found is None else found[0]
+        reached = self.distribution.type_at(self.interface.package, self.interface.type, self.section, path)
+        return None if reached is None else reached[0]
 
 
-def data_read(reads: Iterable[tuple[Path, Read]], prefix: Path = ()) -> Iterator[tuple[Path, ex.Type]]:
+def data_read(reads: Iterable[tuple[Path, MessageRead]], prefix: Path = ()) -> Iterator[tuple[Path, ex.Type]]:
     """Yield all data of a message that is read, also by conversions; repeated if it is read again."""
-    for general, read in reads:
-        for path in _some(general, _ends(read.reference)):
-            if read.conversion is not None:
-                yield from data_read(all_reads([rule.condition for rule in read.conversion.rules]), prefix + path)
+    for general, message_read in reads:
+        for path in _some(general, _ends(message_read.reference)):
+            if message_read.conversion is not None:
+                yield from data_read(
+                    all_reads([rule.condition for rule in message_read.conversion.rules]), prefix + path
+                )
             else:
-                yield prefix + path, read.type or rosgraph.ObjectType()
+                yield prefix + path, message_read.type or rosgraph.ObjectType()
 
 
 def _some(path: Path, ends: Iterable[int]) -> Iterator[Path]:
@@ -140,9 +142,9 @@ def _some(path: Path, ends: Iterable[int]) -> Iterator[Path]:
     yield from (tuple(map(str, chosen)) for chosen in product(*choices))
 
 
-def _ends(read: ex.Expression) -> Iterator[int]:
+def _ends(reference: ex.Expression) -> Iterator[int]:
     """Yield the constant bounds of slices in a read."""
-    access: ex.Expression | None = read.argument if isinstance(read, rosgraph.ConversionCall) else read
+    access: ex.Expression | None = reference.argument if isinstance(reference, rosgraph.ConversionCall) else reference
     while isinstance(access, rosgraph.WireAccess):
         for step in access.steps:
             if isinstance(step, rosgraph.SliceStep):
@@ -177,8 +179,8 @@ def new_object(
     distribution: RosDistribution, interface: rosgraph.Interface, section: Section, path: Iterable[str]
 ) -> Any:
     """Return the object at a path in new data of a type; if the type is unknown, all its fields are zero."""
-    reached = distribution.reached(interface.package, interface.type, section, path)
-    if reached is None or not isinstance(reached[0], Nested):
+    reached = distribution.type_at(interface.package, interface.type, section, path)
+    if reached is None or not isinstance(reached[0], NestedType):
         return BLANK
     return _new(*reached, distribution)
 
@@ -196,10 +198,10 @@ def _new(kind: WireType, section: Section, distribution: RosDistribution) -> Any
         fields = None
     if fields is None:
         return BLANK
-    made = {name: _new(field, Section.MESSAGE, distribution) for name, field in fields.items()}
+    values = {name: _new(field, Section.MESSAGE, distribution) for name, field in fields.items()}
     if str(kind) == "geometry_msgs/Quaternion":
-        made["w"] = 1.0  # nodes set it in ROS 1, too
-    return Record(**made, wire_types={name: str(field) for name, field in fields.items()})
+        values["w"] = 1.0  # nodes set it in ROS 1, too
+    return Record(**values, wire_types={name: str(field) for name, field in fields.items()})
 
 
 def leaf_values(fields: Any, path: Path = ()) -> dict[Path, Leaf]:
@@ -208,10 +210,10 @@ def leaf_values(fields: Any, path: Path = ()) -> dict[Path, Leaf]:
         fields = {str(index): inner for index, inner in enumerate(fields)}
     if not isinstance(fields, dict) or (not fields and path and path[-1].isdigit()):
         return {path: fields}
-    found: dict[Path, Leaf] = {}
+    leaves: dict[Path, Leaf] = {}
     for name, inner in fields.items():
-        found |= leaf_values(inner, (*path, name))
-    return found
+        leaves |= leaf_values(inner, (*path, name))
+    return leaves
 
 
 def _whole(value: Leaf | None, field: Field) -> Any:

@@ -14,8 +14,8 @@ from robosc.model import sct
 from robosc.model.semantics.roles import event_name
 from robosc.run.node_tests.coverage import Goal, Watcher, goals
 from robosc.run.node_tests.guide import Guide, Way
-from robosc.run.node_tests.steps import WAIT, Place, Step, Stimulus
-from robosc.synthesis import encoded
+from robosc.run.node_tests.steps import WAIT, Place, Stimulus, TourStep
+from robosc.synthesis import use_encoding
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -39,14 +39,14 @@ _IN_VAIN = 4
 class _Way(NamedTuple):
     """Consecutive steps, and the goals that they show together, as bits."""
 
-    steps: tuple[Step, ...]
+    steps: tuple[TourStep, ...]
     shows: int
 
 
 @dataclass
 class _Known:
     saved: SavedLoop
-    steps: list[Step] | None = None
+    steps: list[TourStep] | None = None
 
 
 @dataclass
@@ -62,7 +62,7 @@ class Plan:
     period: int
     pause: int
     _known: dict[Place, _Known] = field(default_factory=dict)
-    _found: dict[Place, dict[Place, list[_Way]]] = field(default_factory=dict)
+    _ways_from: dict[Place, dict[Place, list[_Way]]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self._loop = ControlLoop(self.model, self.settings, Hooks(self._before))
@@ -99,9 +99,9 @@ class Plan:
         """Return the place of a loop, and remember its saved state for exploration."""
         now, up = saved.timers
         left = tuple(-((now - up[number]) // self.period) for number in sorted(up)) if self._time_passes else ()
-        found = Place(saved.cells, frozenset(up), pauses, left)
-        self._known.setdefault(found, _Known(saved))
-        return found
+        place = Place(saved.cells, frozenset(up), pauses, left)
+        self._known.setdefault(place, _Known(saved))
+        return place
 
     @property
     def places(self) -> list[Place]:
@@ -113,7 +113,7 @@ class Plan:
         """The goals that can be seen: from the first known place on, else in the supervised system."""
         if self.is_whole:
             return {goal for goal in self.goals if self.bits[goal] & self._anywhere}
-        return encoded(self.model, lambda encoding: self._guide(encoding).possible)
+        return use_encoding(self.model, lambda encoding: self._guide(encoding).possible)
 
     @cached_property
     def is_whole(self) -> bool:
@@ -128,15 +128,15 @@ class Plan:
                     pending.append(step.end)
         return not pending
 
-    def steps(self, place: Place) -> list[Step]:
+    def steps(self, place: Place) -> list[TourStep]:
         """Return all steps from a place that lead to another one or show a goal."""
         known = self._known[place]
         if known.steps is None:
-            found = (self._step(place, known.saved, stimulus) for stimulus in self.stimuli)
-            known.steps = [step for step in found if step is not None and (step.end != place or step.shows)]
+            candidates = (self._step(place, known.saved, stimulus) for stimulus in self.stimuli)
+            known.steps = [step for step in candidates if step is not None and (step.end != place or step.shows)]
         return known.steps
 
-    def _step(self, place: Place, saved: SavedLoop, stimulus: Stimulus) -> Step | None:
+    def _step(self, place: Place, saved: SavedLoop, stimulus: Stimulus) -> TourStep | None:
         loop = self._loop
         loop.restore(saved)
         self._pauses, self._shown = place.pauses, 0
@@ -161,10 +161,10 @@ class Plan:
             self._pauses = False
         return self._ended(stimulus)
 
-    def _ended(self, stimulus: Stimulus) -> Step:
+    def _ended(self, stimulus: Stimulus) -> TourStep:
         self._shown |= self._rest()
         self._pass_period()
-        return Step(stimulus, self.place(self._loop.saved, pauses=self._pauses), self._shown)
+        return TourStep(stimulus, self.place(self._loop.saved, pauses=self._pauses), self._shown)
 
     def _pass_period(self) -> None:
         """Run a tick; if time counts, after a period, with the timers that expire on the way."""
@@ -187,58 +187,58 @@ class Plan:
 
     # Tours
 
-    def tour(self, start: Place, shown: AbstractSet[Goal]) -> list[Step]:
+    def tour(self, start: Place, shown: AbstractSet[Goal]) -> list[TourStep]:
         """Return a short path from a start that shows goals that can be shown and were not, as far as it is found.
 
         If there are too many places to explore, decision diagrams guide the search.
         """
-        wanted = self._mask(self.possible - shown)
+        goals = self._mask(self.possible - shown)
         if not self.is_whole and not self._time_passes:
             known, self._known, self._time_passes = self._known, {}, True
             start = self.place(known[start].saved, pauses=start.pauses)
         if self.is_whole:
-            tours = [self._planned(start, wanted, choice) for choice in _choices(_PLANS)]
+            tours = [self._planned(start, goals, choice) for choice in _choices(_PLANS)]
         else:
-            tours = encoded(self.model, lambda encoding: self._all_guided(start, wanted, encoding))
-        return max(tours, key=lambda tour: ((_together(tour) & wanted).bit_count(), -len(tour)))
+            tours = use_encoding(self.model, lambda encoding: self._all_guided(start, goals, encoding))
+        return max(tours, key=lambda tour: ((_together(tour) & goals).bit_count(), -len(tour)))
 
-    def _planned(self, start: Place, wanted: int, choice: random.Random) -> list[Step]:
-        tour: list[Step] = []
-        left, here = wanted, start
+    def _planned(self, start: Place, goals: int, choice: random.Random) -> list[TourStep]:
+        tour: list[TourStep] = []
+        left, here = goals, start
         while left and (way := self._way_to_any(here, left, choice)):
             tour += way
             here = tour[-1].end
             left &= ~_together(way)
-        return self._shortened(start, tour, wanted, _DETOUR)
+        return self._shortened(start, tour, goals, _DETOUR)
 
-    def _way_to_any(self, start: Place, wanted: int, choice: random.Random) -> list[Step]:
+    def _way_to_any(self, start: Place, goals: int, choice: random.Random) -> list[TourStep]:
         """Return the shortest path to a wanted goal; among several, favor one that shows many, with some randomness."""
-        ways: dict[Place, list[Step]] = {start: []}
+        ways: dict[Place, list[TourStep]] = {start: []}
         layer = [start]
         while layer:
-            found: list[tuple[float, float, list[Step]]] = []
+            rated_ways: list[tuple[float, float, list[TourStep]]] = []
             onwards: list[Place] = []
             for place in layer:
                 for step in self.steps(place):
-                    if step.shows & wanted:
-                        much = (step.shows & wanted).bit_count() * (1 + choice.random())
-                        found.append((much, choice.random(), [*ways[place], step]))
+                    if step.shows & goals:
+                        much = (step.shows & goals).bit_count() * (1 + choice.random())
+                        rated_ways.append((much, choice.random(), [*ways[place], step]))
                     if step.end not in ways:
                         ways[step.end] = [*ways[place], step]
                         onwards.append(step.end)
-            if found:
-                return max(found, key=lambda way: way[:2])[2]
+            if rated_ways:
+                return max(rated_ways, key=lambda way: way[:2])[2]
             layer = onwards
         return []
 
-    def _all_guided(self, start: Place, wanted: int, encoding: Encoding) -> list[list[Step]]:
+    def _all_guided(self, start: Place, goals: int, encoding: Encoding) -> list[list[TourStep]]:
         guide = self._guide(encoding)
-        return [self._guided(start, wanted, guide, choice) for choice in _choices(_GUIDED)]
+        return [self._guided(start, goals, guide, choice) for choice in _choices(_GUIDED)]
 
-    def _guided(self, start: Place, wanted: int, guide: Guide, choice: random.Random) -> list[Step]:
+    def _guided(self, start: Place, goals: int, guide: Guide, choice: random.Random) -> list[TourStep]:
         """Repeat the step that shows the most goals, else follow the supervised system's path to a missing goal."""
-        tour: list[Step] = []
-        left, here, in_vain = wanted, start, Counter[Goal]()
+        tour: list[TourStep] = []
+        left, here, in_vain = goals, start, Counter[Goal]()
         while left:
             # Timers first: some expire only before anything has come in.
             showing = [step for step in self.steps(here) if step.shows & left]
@@ -255,7 +255,7 @@ class Plan:
             tour += way
             here = way[-1].end if way else here
             left &= ~_together(way)
-        return self._shortened(start, tour, wanted, 1)
+        return self._shortened(start, tour, goals, 1)
 
     def _guide(self, encoding: Encoding) -> Guide:
         data: dict[str, list[dict[str, Value]]] = {}
@@ -267,24 +267,24 @@ class Plan:
         self._loop.engine.restore((place.cells, self._loop.engine.saved[1]))
         return self._loop.engine.codes
 
-    def _timed(self, here: Place, wanted: Iterable[Goal]) -> Way | None:
+    def _timed(self, here: Place, goals: Iterable[Goal]) -> Way | None:
         """Return the wait for a goal that is seen when a running timer expires."""
-        for goal in wanted:
+        for goal in goals:
             event = event_name(goal.of.event) if isinstance(goal.of, sct.Edge) else ""
             if self._timers.get(event) in here.running:
                 return Way([(event, {})], {goal})
         return None
 
-    def _followed(self, start: Place, events: Iterable[tuple[str, dict[str, Value]]], wanted: int) -> list[Step]:
+    def _followed(self, start: Place, events: Iterable[tuple[str, dict[str, Value]]], goals: int) -> list[TourStep]:
         """Return steps that cause these events, or similar ones, until a wanted goal is seen."""
-        way: list[Step] = []
+        way: list[TourStep] = []
         for event, inputs in events:
             for _ in range(1 + len(self._timers)):
                 here = way[-1].end if way else start
                 like = [step for step in self.steps(here) if self._is(step.stimulus, event)]
                 if like:  # else the controller performs it itself, or it is not possible now
                     way.append(min(like, key=lambda step: (_unlike(step.stimulus, event, inputs), step.stimulus.name)))
-                if _together(way) & wanted:
+                if _together(way) & goals:
                     return way
                 if not like or self._timers.get(event) not in way[-1].end.running:
                     break  # else another timer expired before this one
@@ -295,7 +295,7 @@ class Plan:
             return ".u_after" in event or event in self._resets
         return event in dict(stimulus.events)
 
-    def _shortened(self, start: Place, tour: list[Step], wanted: int, detour: int) -> list[Step]:
+    def _shortened(self, start: Place, tour: list[TourStep], goals: int, detour: int) -> list[TourStep]:
         """Remove detours from the tour: leave out a part, or take a shorter path, if no goal is lost."""
         improved = True
         while improved:
@@ -305,7 +305,7 @@ class Plan:
             for first in range(len(tour)):
                 seen, ways = _running(tour[first:]), self._ways(places[first], detour)
                 for last in range(len(tour), first, -1):
-                    lost = seen[last - first] & wanted & ~before[first] & ~after[last]
+                    lost = seen[last - first] & goals & ~before[first] & ~after[last]
                     shorter = (way for way in ways.get(places[last], ()) if len(way.steps) < last - first)
                     way = next((way.steps for way in shorter if not lost & ~way.shows), None)
                     if way is not None:
@@ -314,7 +314,7 @@ class Plan:
                         break
                 if improved:
                     break
-        while tour and not tour[-1].shows & wanted & ~_together(tour[:-1]):
+        while tour and not tour[-1].shows & goals & ~_together(tour[:-1]):
             tour.pop()
         return tour
 
@@ -323,16 +323,16 @@ class Plan:
 
         The result is cached if all places were explored, since many tours request it.
         """
-        if (found := self._found.get(start)) is not None:
-            return found
+        if (ways := self._ways_from.get(start)) is not None:
+            return ways
         first = _Way((), 0)
-        found, nearest, layer = {start: [first]}, {start: first}, [start]
+        ways, nearest, layer = {start: [first]}, {start: first}, [start]
         for _ in range(longest):
             onwards = []
             for place in layer:
                 for step in self._known[place].steps or ():
                     way = _Way((*nearest[place].steps, step), nearest[place].shows | step.shows)
-                    others = found.setdefault(step.end, [])
+                    others = ways.setdefault(step.end, [])
                     if all(way.shows & ~other.shows for other in others):
                         others.append(way)
                     if step.end not in nearest:
@@ -340,8 +340,8 @@ class Plan:
                         onwards.append(step.end)
             layer = onwards
         if self.is_whole:
-            self._found[start] = found
-        return found
+            self._ways_from[start] = ways
+        return ways
 
 
 def _choices(number: int) -> list[random.Random]:
@@ -350,15 +350,15 @@ def _choices(number: int) -> list[random.Random]:
 
 def _unlike(stimulus: Stimulus, event: str, inputs: Mapping[str, Value]) -> int:
     """Return how many inputs of the event differ in a stimulus."""
-    given = dict(dict(stimulus.events).get(event, ()))
-    return sum(given.get(name) != value for name, value in inputs.items())
+    stimulus_inputs = dict(dict(stimulus.events).get(event, ()))
+    return sum(stimulus_inputs.get(name) != value for name, value in inputs.items())
 
 
-def _together(steps: Iterable[Step]) -> int:
+def _together(steps: Iterable[TourStep]) -> int:
     return reduce(or_, (step.shows for step in steps), 0)
 
 
-def _running(steps: Sequence[Step]) -> list[int]:
+def _running(steps: Sequence[TourStep]) -> list[int]:
     """Return the goals shown by each prefix of the steps, from the empty one on."""
     shown = [0]
     for step in steps:

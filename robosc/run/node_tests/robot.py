@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from robosc.base.ros_types import RosDistribution
     from robosc.model import rosgraph, sct
-    from robosc.run.node_tests.samples import Incoming
+    from robosc.run.node_tests.samples import IncomingKind
     from robosc.run.runtime.core.port import CallHandlers, ComponentStatus, Endpoint, GoalHandlers, Message
 
 
@@ -51,7 +51,7 @@ class Robot:
         graph: rosgraph.RosGraph,
         distribution: RosDistribution,
         clock: Callable[[], float],
-        incoming: Mapping[sct.Event, Incoming],
+        incoming: Mapping[sct.Event, IncomingKind],
     ) -> None:
         self.now = clock
         #: Pending calls, each with its start time.

@@ -32,14 +32,14 @@ if TYPE_CHECKING:
 
 #: Number of trials without a new sample after which the search ends.
 _TRIALS = 500
-_KEPT = 4
+_SAMPLES_PER_CLASS = 4
 _SEED = 1
 #: Maximum number of classes.
 _CLASSES = 64
 
 
 @dataclass(frozen=True)
-class Read:
+class LoggedValue:
     """Value of a message in the event log: unchanged, or after a conversion."""
 
     path: Path
@@ -56,14 +56,14 @@ class Class:
 
 
 @dataclass
-class Incoming:
+class IncomingKind:
     """Kind of incoming data: its events with their logged reads, all fields read, and sample messages.
 
     `samples`: some messages for each tuple of literals that the conversions make of them, in the order of the events.
     `classes`: fully readable messages, grouped by the inputs of the supervisor.
     """
 
-    events: list[tuple[str, list[Read]]]
+    events: list[tuple[str, list[LoggedValue]]]
     fields: dict[Path, Field]
     #: Events that a message may not cause, since array elements that they need may be missing.
     unreadable: set[str]
@@ -78,22 +78,24 @@ class Incoming:
 
     def defaults(self, values: Mapping[Path, Leaf]) -> dict[Path, Leaf]:
         """Return the other fields whose default is not zero, `false` or empty."""
-        found: dict[Path, Leaf] = {}
+        initial_values: dict[Path, Leaf] = {}
         for path, known in self.fields.items():
             if known.initial:
-                ways = {_along(path, given) for given in values} if any(map(str.isdigit, path)) else {path}
-                found |= {way: known.initial for way in ways if way is not None and way not in values}
-        return found
+                ways = {_along(path, other_path) for other_path in values} if any(map(str.isdigit, path)) else {path}
+                initial_values |= {way: known.initial for way in ways if way is not None and way not in values}
+        return initial_values
 
     @property
-    def conversions(self) -> list[Read]:
+    def conversions(self) -> list[LoggedValue]:
         """The values that the log shows as literals."""
-        return [read for _, shown in self.events for read in shown if read.conversion is not None]
+        return [logged for _, shown in self.events for logged in shown if logged.conversion is not None]
 
     @property
     def direct(self) -> list[Path]:
         """The paths of the values that the log shows unchanged."""
-        return list(dict.fromkeys(read.path for _, shown in self.events for read in shown if read.conversion is None))
+        return list(
+            dict.fromkeys(logged.path for _, shown in self.events for logged in shown if logged.conversion is None)
+        )
 
 
 class Values:
@@ -159,8 +161,10 @@ def incoming(
     distribution: RosDistribution,
     interface: rosgraph.Interface,
     part: Section,
-    receptions: Sequence[tuple[str, messages.Shown, Collection[ex.Expression], Collection[tuple[Path, messages.Read]]]],
-) -> Incoming:
+    receptions: Sequence[
+        tuple[str, messages.Shown, Collection[ex.Expression], Collection[tuple[Path, messages.MessageRead]]]
+    ],
+) -> IncomingKind:
     """Return one kind of incoming message: its events with their logged values, and the fields that are read."""
     definition = Definition(distribution, interface, part)
     fields: dict[Path, Field] = {}
@@ -171,30 +175,31 @@ def incoming(
             unreadable.add(event)
         for path, kind in data_read([*messages.reads(values), *later]):
             fields.setdefault(path, definition.field(path, kind))
-        found = [
-            Read(path, part.conversion if isinstance(part, messages.Read) else None) for path, part in shown.items()
+        logged = [
+            LoggedValue(path, part.conversion if isinstance(part, messages.MessageRead) else None)
+            for path, part in shown.items()
         ]
-        events.append((event, found))
+        events.append((event, logged))
     inner = {(), *(path[:length] for path in fields for length in range(len(path)))} - {
         path for path, field in fields.items() if not isinstance(field.type, rosgraph.ObjectType)
     }
     fields = {path: field for path, field in fields.items() if path not in inner}
-    return Incoming(events, fields, unreadable, initial=definition.initial(fields))
+    return IncomingKind(events, fields, unreadable, initial=definition.initial(fields))
 
 
-def all_incoming(graph: rosgraph.RosGraph, distribution: RosDistribution) -> dict[sct.Event, Incoming]:
+def all_incoming(graph: rosgraph.RosGraph, distribution: RosDistribution) -> dict[sct.Event, IncomingKind]:
     """Return the messages to choose from for each incoming event; the events of one topic share them."""
     data = NodeData(graph, Engine(graph.model))
     data.reason = Failure.ABORTED
-    values, kept = Values(graph), list(messages.kept_reads(graph))
-    known: dict[sct.Event, Incoming] = {}
-    for interface, part, receptions in messages.received(graph):
+    values, stored_reads = Values(graph), list(messages.kept_reads(graph))
+    known: dict[sct.Event, IncomingKind] = {}
+    for interface, part, receptions in messages.received_messages(graph):
         described = []
         for reception in receptions:
-            read = [assigned.value for assigned in reception.inputs] + data.values_read(reception.event)
-            later = [(path, inner) for owner, path, inner in kept if owner is reception]
+            values_read = [assigned.value for assigned in reception.inputs] + data.values_read(reception.event)
+            later = [(path, inner) for owner, path, inner in stored_reads if owner is reception]
             later += _read_by_error(reception, data)
-            described.append((event_name(reception.event), ReceivedData(read).parts, read, later))
+            described.append((event_name(reception.event), ReceivedData(values_read).parts, values_read, later))
         kind = incoming(distribution, interface, part, described)
         if any(happens_anyway(reception.event) for reception in receptions):
             kind.unreadable.clear()
@@ -203,7 +208,7 @@ def all_incoming(graph: rosgraph.RosGraph, distribution: RosDistribution) -> dic
     return known
 
 
-def _read_by_error(response: rosgraph.Reception, data: NodeData) -> Iterator[tuple[Path, messages.Read]]:
+def _read_by_error(response: rosgraph.Reception, data: NodeData) -> Iterator[tuple[Path, messages.MessageRead]]:
     """Yield data of a result that the error of an action reads: a response that can't be read is an error."""
     client = response.eContainer()
     if isinstance(client, rosgraph.ActionClient) and client.response is response:
@@ -211,7 +216,7 @@ def _read_by_error(response: rosgraph.Reception, data: NodeData) -> Iterator[tup
         yield from messages.reads([*values, *data.values_read(client.error.event)])
 
 
-def _find_samples(kind: Incoming, values: Values, data: NodeData, receptions: Sequence[rosgraph.Reception]) -> None:
+def _find_samples(kind: IncomingKind, values: Values, data: NodeData, receptions: Sequence[rosgraph.Reception]) -> None:
     """Fill in `samples` and `classes`: try messages until no new ones appear within a number of trials."""
     choice = random.Random(_SEED)  # noqa: S311  # reproducible
     pools = {path: values.of(field) for path, field in kind.fields.items()}
@@ -222,35 +227,37 @@ def _find_samples(kind: Incoming, values: Values, data: NodeData, receptions: Se
     in_vain = 0
     while in_vain < _TRIALS:
         tried = _tried(choice, paths, pools, seen)
-        made = kind.message(tried)
-        literals = tuple(_literal(read, made, data) for read in conversions)
-        kept = [kind.samples.setdefault(literals, [])]
-        events = _events(receptions, made, data)
+        message = kind.message(tried)
+        literals = tuple(_literal(conversion, message, data) for conversion in conversions)
+        sample_lists = [kind.samples.setdefault(literals, [])]
+        events = _events(receptions, message, data)
         if events is not None and ((literals, events) in classes or len(classes) < _CLASSES):
-            kept.append(classes.setdefault((literals, events), Class(literals, events)).samples)
+            sample_lists.append(classes.setdefault((literals, events), Class(literals, events)).samples)
         in_vain += 1
-        for samples in kept:
-            if len(samples) < _KEPT and tried not in samples:
+        for samples in sample_lists:
+            if len(samples) < _SAMPLES_PER_CLASS and tried not in samples:
                 samples.append(tried)
                 seen.append(tried)
                 in_vain = 0
-    kind.samples = {literals: sorted(found, key=len, reverse=True) for literals, found in kind.samples.items()}
+    kind.samples = {
+        literals: sorted(candidates, key=len, reverse=True) for literals, candidates in kind.samples.items()
+    }
     kind.classes = list(classes.values())
 
 
 def _events(
-    receptions: Sequence[rosgraph.Reception], made: Any, data: NodeData
+    receptions: Sequence[rosgraph.Reception], message: Any, data: NodeData
 ) -> tuple[tuple[str, tuple[tuple[str, Any], ...]], ...] | None:
     """Return the inputs of the supervisor from a message; None if some of them can't be read."""
     events = []
     try:
         for reception in receptions:
             for value in data.values_read(reception.event):
-                data.value(value, made)
+                data.value(value, message)
             if not happens_anyway(reception.event):
-                for given in reception.inputs:
-                    data.value(given.value, made)
-            inputs = ((given.input.name, data.input(given, made)) for given in reception.inputs)
+                for assignment in reception.inputs:
+                    data.value(assignment.value, message)
+            inputs = ((assignment.input.name, data.input(assignment, message)) for assignment in reception.inputs)
             events.append((event_name(reception.event), tuple(inputs)))
     except UnreadableError:
         return None
@@ -269,28 +276,28 @@ def _tried(
     place = choice.random()
     match choice.randrange(4):
         case 0:
-            made = {path: pools[path][int(place * len(pools[path]))] for path in paths}
+            leaves = {path: pools[path][int(place * len(pools[path]))] for path in paths}
         case 1:
-            made = {path: choice.choice(pools[path]) for path in paths}
+            leaves = {path: choice.choice(pools[path]) for path in paths}
         case _:
-            made = dict(choice.choice(seen))
+            leaves = dict(choice.choice(seen))
             for path in choice.sample(paths, min(len(paths), choice.randint(1, 3))):
-                made[path] = choice.choice(pools[path])
+                leaves[path] = choice.choice(pools[path])
     if choice.random() < 1 / 16:
-        made = shortened(made, choice)
-    return {path: made[path] for path in paths if path in made}
+        leaves = shorten(leaves, choice)
+    return {path: leaves[path] for path in paths if path in leaves}
 
 
-def shortened(values: Mapping[Path, Leaf], choice: random.Random) -> dict[Path, Leaf]:
+def shorten(values: Mapping[Path, Leaf], choice: random.Random) -> dict[Path, Leaf]:
     """Return some of the values, so that an array may be too short."""
     return dict(islice(values.items(), choice.randrange(len(values) + 1)))
 
 
-def _literal(read: Read, argument: Any, data: NodeData) -> str:
-    assert read.conversion is not None
-    for step in read.path:
+def _literal(logged: LoggedValue, argument: Any, data: NodeData) -> str:
+    assert logged.conversion is not None
+    for step in logged.path:
         try:
             argument = argument[int(step)] if step.isdigit() else getattr(argument, step)
         except IndexError:
-            return read.conversion.default.name
-    return data.convert(read.conversion, argument).name
+            return logged.conversion.default.name
+    return data.convert(logged.conversion, argument).name

@@ -38,7 +38,7 @@ class Place(NamedTuple):
         return self._replace(left=other.left) == other
 
 
-class Step(NamedTuple):
+class TourStep(NamedTuple):
     """Step of a tour: its stimulus, the place that it leads to, and the goals that it shows, as bits."""
 
     stimulus: Stimulus

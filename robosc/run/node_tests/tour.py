@@ -14,9 +14,9 @@ from robosc.model.semantics.roles import event_name
 from robosc.run.node_tests.coverage import Coverage, Watcher
 from robosc.run.node_tests.drive import Drive, DrivenController
 from robosc.run.node_tests.plan import Plan
-from robosc.run.node_tests.steps import WAIT, Place, Step, Stimulus
-from robosc.run.runtime.core.event_log import nested
-from robosc.run.runtime.core.port import Failure, Outcome
+from robosc.run.node_tests.steps import WAIT, Place, Stimulus, TourStep
+from robosc.run.runtime.core.event_log import nest
+from robosc.run.runtime.core.port import Failure, GoalOutcome
 from robosc.run.runtime.core.times import RESOLUTION_MS
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from robosc.model import rosgraph
     from robosc.run.node_tests.coverage import Goal
     from robosc.run.node_tests.drive import Act
-    from robosc.run.node_tests.samples import Class, Incoming
+    from robosc.run.node_tests.samples import Class, IncomingKind
 
 _SEED = 1
 #: Maximum number of periods to wait for a timer, a failure or the pause after it.
@@ -68,7 +68,7 @@ class _Planned(NamedTuple):
 
     start: Place
     shown: frozenset[Goal]
-    steps: list[Step]
+    steps: list[TourStep]
 
 
 class _OtherwiseError(Exception):
@@ -78,8 +78,7 @@ class _OtherwiseError(Exception):
 def tour_of(graph: rosgraph.RosGraph, configuration: Configuration, distribution: RosDistribution) -> Tour:
     """Return the tour of a controller on one ROS.
 
-    While the model is remembered (`robosc.engine.remembered`), both versions of ROS share a plan if their stimuli are
-    equal.
+    Within `robosc.engine.cache_transformations`, both versions of ROS share a plan if their stimuli are equal.
     """
 
     def anew() -> Tour:
@@ -150,7 +149,7 @@ class Tour(Drive):
                 pass
         finally:
             self._controller.close()
-        self.traces.append(self._lines.kept)
+        self.traces.append(self._lines.lines)
 
     def _work(self) -> None:
         super()._work()
@@ -160,7 +159,7 @@ class Tour(Drive):
         """Return whether the tour was created for this configuration and distribution."""
         return self._configuration == configuration and self._distribution is distribution
 
-    def _tour(self) -> list[Step]:
+    def _tour(self) -> list[TourStep]:
         start, shown = self._controller.place(self.plan), frozenset(self._shown)
         if self._planned_before is None:
             planned = _Planned(start, shown, self.plan.tour(start, shown))
@@ -172,7 +171,7 @@ class Tour(Drive):
         self.planned.append(planned)
         return planned.steps
 
-    def _stepped(self, step: Step) -> bool:
+    def _stepped(self, step: TourStep) -> bool:
         """Perform a step; return whether the controller deviated from the plan."""
         self._steps += 1
         self._controller.happened.clear()
@@ -206,17 +205,17 @@ class Tour(Drive):
             acts |= self._classes(topic.topic, topic.receptions, partial(self._publish, topic))
         for service in self._graph.serviceClients:
             acts |= self._classes(service.identifier, [service.response], partial(self._answer, service))
-            reasons = tuple((given.input.name, Failure.TIMEOUT.value) for given in service.error.inputs)
+            reasons = tuple((assignment.input.name, Failure.TIMEOUT.value) for assignment in service.error.inputs)
             failure = Stimulus(f"{service.identifier} fails", ((event_name(service.error.event), reasons),), fails=True)
             acts[failure] = partial(self._fail, service)
         for action in self._graph.actionClients:
             acts |= self._classes(action.identifier, [action.feedback], partial(self._feed_back, action))
-            succeed = partial(self._end, action, Outcome.SUCCEEDED)
+            succeed = partial(self._end, action, GoalOutcome.SUCCEEDED)
             acts |= self._classes(action.identifier, [action.response], succeed)
             acts |= self._classes(
                 f"{action.identifier} fails", [action.error], partial(self._abort, action), fails=True
             )
-            end = partial(self._end, action, Outcome.CANCELED)
+            end = partial(self._end, action, GoalOutcome.CANCELED)
             acts |= self._classes(f"{action.identifier} is canceled", [action.canceled], end)
         return acts
 
@@ -224,27 +223,27 @@ class Tour(Drive):
         self,
         name: str,
         receptions: Sequence[rosgraph.Reception],
-        send: Callable[[Incoming, Class], dict[str, Any] | None],
+        send: Callable[[IncomingKind, Class], dict[str, Any] | None],
         *,
         fails: bool = False,
     ) -> dict[Stimulus, Act]:
         kind = self.incoming[receptions[0].event]
         return {
-            Stimulus(f"{name} {number}", found.events, fails): partial(send, kind, found)
-            for number, found in enumerate(kind.classes)
+            Stimulus(f"{name} {number}", message_class.events, fails): partial(send, kind, message_class)
+            for number, message_class in enumerate(kind.classes)
         }
 
-    def _publish(self, topic: rosgraph.Subscription, kind: Incoming, found: Class) -> dict[str, Any]:
+    def _publish(self, topic: rosgraph.Subscription, kind: IncomingKind, message_class: Class) -> dict[str, Any]:
         """Send a message; the first one on a topic with several events lacks data that one of them needs."""
         unreadable = [self._unreadable(reception) for reception in topic.receptions[1:]]
         short = next((message for message in unreadable if message is not None), None)
-        data, fields = self._message(kind, found) if short is None else short
+        data, fields = self._message(kind, message_class) if short is None else short
         self._controller.receive(topic, data)
         return fields
 
-    def _answer(self, client: rosgraph.ServiceClient, kind: Incoming, found: Class) -> dict[str, Any]:
+    def _answer(self, client: rosgraph.ServiceClient, kind: IncomingKind, message_class: Class) -> dict[str, Any]:
         _, handlers = self._robot.calls.pop(client)
-        data, fields = self._message(kind, found)
+        data, fields = self._message(kind, message_class)
         handlers.answered(data)
         return fields
 
@@ -257,34 +256,35 @@ class Tour(Drive):
         handlers.answered(unreadable[0])
         return unreadable[1]
 
-    def _feed_back(self, client: rosgraph.ActionClient, kind: Incoming, found: Class) -> dict[str, Any]:
-        data, fields = self._message(kind, found)
+    def _feed_back(self, client: rosgraph.ActionClient, kind: IncomingKind, message_class: Class) -> dict[str, Any]:
+        data, fields = self._message(kind, message_class)
         self._robot.goals[client].handlers.feedback(data)
         return fields
 
     def _end(
-        self, client: rosgraph.ActionClient, outcome: Outcome, kind: Incoming, found: Class
+        self, client: rosgraph.ActionClient, outcome: GoalOutcome, kind: IncomingKind, message_class: Class
     ) -> dict[str, Any] | None:
         """End a goal with a result."""
-        data, fields = self._message(kind, found)
+        data, fields = self._message(kind, message_class)
         self._robot.goals.pop(client).handlers.ended(outcome, data, "")
-        return fields if fields or outcome is Outcome.SUCCEEDED else None
+        return fields if fields or outcome is GoalOutcome.SUCCEEDED else None
 
-    def _abort(self, client: rosgraph.ActionClient, kind: Incoming, found: Class) -> dict[str, Any] | None:
+    def _abort(self, client: rosgraph.ActionClient, kind: IncomingKind, message_class: Class) -> dict[str, Any] | None:
         """End a goal with a result that can't be read, if possible; else abort it."""
         unreadable = self._unreadable(client.response)
         if unreadable is None:
-            return self._end(client, Outcome.ABORTED, kind, found)
-        self._robot.goals.pop(client).handlers.ended(Outcome.SUCCEEDED, unreadable[0], "")
+            return self._end(client, GoalOutcome.ABORTED, kind, message_class)
+        self._robot.goals.pop(client).handlers.ended(GoalOutcome.SUCCEEDED, unreadable[0], "")
         return unreadable[1]
 
-    def _message(self, kind: Incoming, found: Class) -> tuple[Any, dict[str, Any]]:
+    def _message(self, kind: IncomingKind, message_class: Class) -> tuple[Any, dict[str, Any]]:
         """Return the least used sample of a class, as data and as nested fields."""
         number = min(
-            range(len(found.samples)), key=lambda sample: (self._used[id(found), sample], self._choice.random())
+            range(len(message_class.samples)),
+            key=lambda sample: (self._used[id(message_class), sample], self._choice.random()),
         )
-        self._used[id(found), number] += 1
-        return kind.message(found.samples[number]), nested(found.samples[number])
+        self._used[id(message_class), number] += 1
+        return kind.message(message_class.samples[number]), nest(message_class.samples[number])
 
     def _unreadable(self, reception: rosgraph.Reception) -> tuple[Any, dict[str, Any]] | None:
         """Return data without the elements that the present state needs; None if it needs none, or if used before."""

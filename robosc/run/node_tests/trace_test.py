@@ -13,7 +13,7 @@ from robosc.model import sct
 from robosc.model.semantics.printing import SctPrinter
 from robosc.model.semantics.roles import event_name
 from robosc.run.node_tests.tour import tour_of
-from robosc.run.runtime.core.event_log import nested
+from robosc.run.runtime.core.event_log import nest
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from robosc.m2t.targets import Target
     from robosc.model import rosgraph
     from robosc.run.node_tests.coverage import Goal
-    from robosc.run.node_tests.samples import Incoming
+    from robosc.run.node_tests.samples import IncomingKind
     from robosc.run.runtime.core.port import Client
 
 
@@ -59,14 +59,14 @@ def trace_test(
     files = player_files(graph, configuration, started, tour.incoming)
     for number, lines in enumerate(tour.traces, 1):
         files[f"traces/tour_{number}.jsonl"] = "".join(f"{line}\n" for line in lines)
-    return TraceTest(started, files, str(tour.coverage), [told(goal) for goal in tour.coverage.missed])
+    return TraceTest(started, files, str(tour.coverage), [describe_goal(goal) for goal in tour.coverage.missed])
 
 
 def player_files(
     graph: rosgraph.RosGraph,
     configuration: Configuration,
     started: Mapping[str, bool | int],
-    incoming: Mapping[sct.Event, Incoming],
+    incoming: Mapping[sct.Event, IncomingKind],
 ) -> dict[str, str]:
     """Return the player's files with its description of a node started with these parameters: file to text."""
     connected = json.dumps(_connections(graph, configuration, started, incoming), indent=1) + "\n"
@@ -74,7 +74,7 @@ def player_files(
     return {"connections.json": connected, "trace_player.py": player}
 
 
-def told(goal: Goal) -> str:
+def describe_goal(goal: Goal) -> str:
     """Return a goal in words: `the guard of the request to move is false`."""
     if isinstance(goal.of, sct.Event):
         alone = f" for `{SctPrinter()(goal.cause)}` alone" if goal.cause is not None else ""
@@ -87,7 +87,7 @@ def _connections(
     graph: rosgraph.RosGraph,
     configuration: Configuration,
     started: Mapping[str, bool | int],
-    incoming: Mapping[sct.Event, Incoming],
+    incoming: Mapping[sct.Event, IncomingKind],
 ) -> dict[str, Any]:
     """Return the player's description of the node."""
     return {
@@ -96,7 +96,11 @@ def _connections(
         "period": started["period_ms"] / 1000,
         "timed": any(event.timer is not None for plant in graph.model.plants for event in plant.events),
         "subscriptions": [
-            {"topic": topic.topic, "type": _type(topic.interface), **described(incoming[topic.receptions[0].event])}
+            {
+                "topic": topic.topic,
+                "type": _type(topic.interface),
+                **describe_incoming(incoming[topic.receptions[0].event]),
+            }
             for topic in graph.subscriptions
         ],
         "publishers": [
@@ -112,7 +116,7 @@ def _connections(
             {
                 **_client(service, started),
                 "timeout": started["service_timeout_ms"] / 1000,
-                "response": described(incoming[service.response.event]),
+                "response": describe_incoming(incoming[service.response.event]),
             }
             for service in graph.serviceClients
         ],
@@ -120,10 +124,10 @@ def _connections(
             {
                 **_client(action, started),
                 "cancel": event_name(action.cancel),
-                "failure": described(incoming[action.error.event]),
-                "canceled": described(incoming[action.canceled.event]),
-                "feedback": described(incoming[action.feedback.event]),
-                "response": described(incoming[action.response.event]),
+                "failure": describe_incoming(incoming[action.error.event]),
+                "canceled": describe_incoming(incoming[action.canceled.event]),
+                "feedback": describe_incoming(incoming[action.feedback.event]),
+                "response": describe_incoming(incoming[action.response.event]),
             }
             for action in graph.actionClients
         ],
@@ -141,20 +145,20 @@ def _client(client: Client, started: Mapping[str, bool | int]) -> dict[str, Any]
     }
 
 
-def described(kind: Incoming) -> dict[str, Any]:
+def describe_incoming(kind: IncomingKind) -> dict[str, Any]:
     """Return the player's description of one kind of incoming data."""
     return {
         "events": [
             {
                 "event": event,
                 **({"unreadable": True} if event in kind.unreadable else {}),
-                "reads": [{"path": list(read.path), "converted": read.conversion is not None} for read in shown],
+                "reads": [{"path": list(logged.path), "converted": logged.conversion is not None} for logged in shown],
             }
             for event, shown in kind.events
         ],
         "samples": [
-            {"literals": list(literals), "message": nested(found[0])}
-            for literals, found in kind.samples.items()
+            {"literals": list(literals), "message": nest(samples[0])}
+            for literals, samples in kind.samples.items()
             if literals
         ],
     }

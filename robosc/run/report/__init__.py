@@ -4,8 +4,8 @@
     page = as_html(found)
 
 `contents` collects it as plain data, with the order and the keys of the JSON. `printing` finds requirements in the
-generated code. `playing` plays the traces of the generated tests on the interpreter. `digests` identifies the inputs
-and outputs.
+generated code. `trace_coverage` plays the traces of the generated tests on the interpreter. `digests` identifies the
+inputs and outputs.
 """
 
 from robosc.run.report.contents import report

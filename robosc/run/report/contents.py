@@ -14,10 +14,10 @@ from robosc.model.places import place
 from robosc.model.semantics.durations import timer_text
 from robosc.model.semantics.printing import RobotPrinter
 from robosc.model.semantics.roles import event_name, plant_of
-from robosc.model.semantics.walks import copied
+from robosc.model.semantics.walks import copy_tree
 from robosc.run.node_tests.trace_test import trace_test_of
 from robosc.run.report import digests, printing
-from robosc.run.report.playing import play
+from robosc.run.report.trace_coverage import play
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from robosc.language.configuration import Configuration
     from robosc.m2t.models import Models
     from robosc.model import rosgraph
-    from robosc.run.report.playing import Shown
+    from robosc.run.report.trace_coverage import TraceCoverage
 
 #: First paragraph of the report.
 NOTICE = (
@@ -58,11 +58,11 @@ def report(  # noqa: PLR0913 - the inputs of a report
     different = {text: path for path, text in reversed(traces.items())}
     shown = play(models, {path: text for path, text in traces.items() if different[text] == path})
     model = models.sct
-    stated = [*model.requirements, *model.invariants, *model.properties]
+    statements = [*model.requirements, *model.invariants, *model.properties]
     return {
         "notice": NOTICE,
         "robot": model.name,
-        "requirements": _requirements(model, stated, verdicts, shown, printing.Sources(outputs)),
+        "requirements": _requirements(model, statements, verdicts, shown, printing.Sources(outputs)),
         "verdicts": [
             {
                 "property": verdict.property,
@@ -99,23 +99,23 @@ def _generated(
         for target in (TARGETS[name] for name in _TARGETS):
             if target.needs_graph and models.rosgraph is None:
                 continue
-            found = target.findings(models, configuration)
-            if has_errors(found):
-                refused.append({"target": target.name, "reason": found[0].message})
+            findings = target.findings(models, configuration)
+            if has_errors(findings):
+                refused.append({"target": target.name, "reason": findings[0].message})
                 continue
             tests = trace_test_of(target, models, configuration, interface_paths)
             missed |= dict.fromkeys(tests.missed if tests else ())
-            made = target.files(models, configuration, tests=tests)
+            texts = target.files(models, configuration, tests=tests)
             folder = target.folder(models, configuration)
-            files |= {f"{folder}/{path}" if folder else path: text for path, text in made.items()}
+            files |= {f"{folder}/{path}" if folder else path: text for path, text in texts.items()}
     return files, refused, list(missed)
 
 
 def _requirements(
     model: sct.SupervisoryControlModel,
-    stated: Sequence[sct.StatedRequirement],
+    statements: Sequence[sct.StatedRequirement],
     verdicts: Sequence[Verdict],
-    shown: Shown,
+    shown: TraceCoverage,
     sources: printing.Sources,
 ) -> list[dict[str, Any]]:
     """Return one entry for each requirement and property of the text.
@@ -124,10 +124,10 @@ def _requirements(
     """
     guards = {guard.event: guard for guard in model.supervisor.guards} if model.supervisor else {}
     grouped: dict[str, list[sct.StatedRequirement]] = {}
-    for requirement in stated:
+    for requirement in statements:
         grouped.setdefault(requirement_identifier(requirement), []).append(requirement)
     by_property = {verdict.property: verdict.outcome.value for verdict in verdicts}
-    found = []
+    entries = []
     for name, parts in grouped.items():
         file, span = place(parts[0])
         generated: dict[str, set[int]] = {}
@@ -135,7 +135,7 @@ def _requirements(
             for path, lines in sources.places(part).items():
                 generated.setdefault(path, set()).update(lines)
         about = [verdict for verdict in verdicts if verdict.requirement == name]
-        found.append(
+        entries.append(
             {
                 "name": name,
                 "kind": _kind(parts[0]),
@@ -151,11 +151,11 @@ def _requirements(
                 "generated": [{"path": path, "lines": sorted(generated[path])} for path in sorted(generated)],
             }
         )
-    return found
+    return entries
 
 
-def _kind(stated: sct.StatedRequirement) -> str:
-    match stated:
+def _kind(statement: sct.StatedRequirement) -> str:
+    match statement:
         case sct.Requirement():
             return "requirement"
         case sct.StateInvariant():
@@ -163,10 +163,12 @@ def _kind(stated: sct.StatedRequirement) -> str:
     return "property"
 
 
-def _guarded(requirement: sct.Requirement, guards: Mapping[sct.Event, sct.EventGuard], shown: Shown) -> dict[str, Any]:
+def _guarded(
+    requirement: sct.Requirement, guards: Mapping[sct.Event, sct.EventGuard], shown: TraceCoverage
+) -> dict[str, Any]:
     """Return the condition on a requirement's event, the guard that synthesis added, and the results of the tests."""
     guard = guards.get(requirement.event)
-    added = None if guard is None or guard.synthesis is None else RobotPrinter()(copied(guard.synthesis))
+    added = None if guard is None or guard.synthesis is None else RobotPrinter()(copy_tree(guard.synthesis))
     seen = {}
     for word, where in (("allowed", shown.allowed), ("forbidden", shown.forbidden)):
         path, line = where.get(requirement, ("", 0))
@@ -174,7 +176,7 @@ def _guarded(requirement: sct.Requirement, guards: Mapping[sct.Event, sct.EventG
     return {
         "event": event_name(requirement.event),
         "meaning": words(requirement.event),
-        "condition": f"{requirement.kind.name} {RobotPrinter()(copied(requirement.condition))}",
+        "condition": f"{requirement.kind.name} {RobotPrinter()(copy_tree(requirement.condition))}",
         "added_by_synthesis": added,
         "why": (guard.explanation or None) if guard and added else None,
         "tests": seen,

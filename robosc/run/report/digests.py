@@ -37,12 +37,12 @@ def of_tool() -> str:
     It is the same for a checkout and for the wheel that is built from it.
     """
     package = locate("run").parent
-    found = {path.relative_to(package).as_posix(): path for path in package.rglob("*")}
+    paths = {path.relative_to(package).as_posix(): path for path in package.rglob("*")}
     for name in ("grammar/robosc.tx", "metamodel/sct.ecore"):
         folder = locate(name).parent
-        found |= {f"{folder.name}/{path.relative_to(folder).as_posix()}": path for path in folder.rglob("*")}
+        paths |= {f"{folder.name}/{path.relative_to(folder).as_posix()}": path for path in folder.rglob("*")}
     return together(
         (relative, digest(path.read_bytes()))
-        for relative, path in found.items()
+        for relative, path in paths.items()
         if path.suffix in _SOURCES and "__pycache__" not in relative
     )

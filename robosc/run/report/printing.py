@@ -32,16 +32,16 @@ class Sources:
         """Return the files that cite a requirement, and the lines in which the citations begin."""
         if not requirement.text:
             return {}
-        said = remark(requirement)
+        citation = remark(requirement)
         printed = [f"reasons.add_requirement({string_literal(requirement.text)});"]
         for indent in _INDENTS:
-            printed += [comment([said], indent), line_comment(said, indent)]
+            printed += [comment([citation], indent), line_comment(citation, indent)]
             printed.append(line_comment(f"Overrides: {requirement.text}", indent))
-        found = {
+        lines_by_path = {
             path: sorted({line for text in printed for line in lines.places(text)})
             for path, lines in self._files.items()
         }
-        return {path: lines for path, lines in found.items() if lines}
+        return {path: lines for path, lines in lines_by_path.items() if lines}
 
 
 class _File:

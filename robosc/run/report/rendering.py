@@ -19,12 +19,12 @@ if TYPE_CHECKING:
 _MARKUP = re.compile(r"[\\*|]|(?<=\w)_(?!\w)")
 
 
-def as_json(found: Mapping[str, Any]) -> str:
+def as_json(contents: Mapping[str, Any]) -> str:
     """Return the report as JSON for programs; its schema is `report.schema.json`."""
-    return json.dumps(found, indent=2, ensure_ascii=False) + "\n"
+    return json.dumps(contents, indent=2, ensure_ascii=False) + "\n"
 
 
-def as_html(found: Mapping[str, Any]) -> str:
+def as_html(contents: Mapping[str, Any]) -> str:
     """Return the report as a self-contained page: no script, font or picture from elsewhere.
 
     Texts of the model are escaped. The content security policy blocks everything except the page's style sheet, which
@@ -35,23 +35,23 @@ def as_html(found: Mapping[str, Any]) -> str:
     style = locate("run/report/templates/report.css").read_text(encoding="utf-8")
     allowed = b64encode(sha256(style.encode()).digest()).decode("ascii")
     page = templates.get_template("report.html.j2")
-    return page.render(**found, style=style, style_hash=allowed, outcomes=_outcomes(found))
+    return page.render(**contents, style=style, style_hash=allowed, outcomes=_outcomes(contents))
 
 
-def _outcomes(found: Mapping[str, Any]) -> dict[str, int]:
+def _outcomes(contents: Mapping[str, Any]) -> dict[str, int]:
     """Return the number of verdicts of each outcome."""
-    told = [verdict["outcome"] for verdict in found["verdicts"]]
-    return {outcome: told.count(outcome) for outcome in ("proved", "sampled", "skipped", "refuted")}
+    outcomes = [verdict["outcome"] for verdict in contents["verdicts"]]
+    return {outcome: outcomes.count(outcome) for outcome in ("proved", "sampled", "skipped", "refuted")}
 
 
-def as_needs(found: Mapping[str, Any]) -> str:
+def as_needs(contents: Mapping[str, Any]) -> str:
     """Return the requirements, and a test case for each verdict, in the format of sphinx-needs (`needimport`)."""
     needs: dict[str, dict[str, Any]] = {}
     names = {
-        requirement["name"]: _identifier("REQ", found["robot"], requirement["name"])
-        for requirement in found["requirements"]
+        requirement["name"]: _identifier("REQ", contents["robot"], requirement["name"])
+        for requirement in contents["requirements"]
     }
-    for requirement in found["requirements"]:
+    for requirement in contents["requirements"]:
         outcomes = [verdict["outcome"] for verdict in requirement["verdicts"]]
         needs[names[requirement["name"]]] = {
             "id": names[requirement["name"]],
@@ -59,23 +59,23 @@ def as_needs(found: Mapping[str, Any]) -> str:
             "title": requirement["name"],
             "content": "\n\n".join(map(_plain, requirement["texts"])),
             "status": _status(outcomes),
-            "tags": [requirement["kind"].replace(" ", "_"), found["robot"]],
+            "tags": [requirement["kind"].replace(" ", "_"), contents["robot"]],
             "links": [],
         }
-    for number, verdict in enumerate(found["verdicts"], 1):
-        identifier = _identifier("TEST", found["robot"], str(number))
+    for number, verdict in enumerate(contents["verdicts"], 1):
+        identifier = _identifier("TEST", contents["robot"], str(number))
         needs[identifier] = {
             "id": identifier,
             "type": "test",
             "title": visible(verdict["property"]),
             "content": _plain(verdict["explanation"] or verdict["evidence"]),
             "status": verdict["outcome"],
-            "tags": ["robosc_verify", found["robot"]],
+            "tags": ["robosc_verify", contents["robot"]],
             "links": [names[verdict["requirement"]]] if verdict["requirement"] in names else [],
         }
-    version = found["digests"]["tool"]["version"]
-    held = {"needs": needs, "needs_amount": len(needs)}
-    answer = {"project": found["robot"], "current_version": version, "versions": {version: held}}
+    version = contents["digests"]["tool"]["version"]
+    version_entry = {"needs": needs, "needs_amount": len(needs)}
+    answer = {"project": contents["robot"], "current_version": version, "versions": {version: version_entry}}
     return json.dumps(answer, indent=2, ensure_ascii=False) + "\n"
 
 

@@ -8,7 +8,7 @@ from robosc.language.configuration.parameters import controller_parameters, laye
 from robosc.run.runtime.core.controller import Controller
 from robosc.run.runtime.core.event_log import default_log
 from robosc.run.runtime.core.layer import Layer
-from robosc.run.runtime.core.node import Node, StartError
+from robosc.run.runtime.core.node import RunningNode, StartError
 from robosc.run.runtime.core.settings import SafeMessages, Settings
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ def run_controller(
     `arguments` are those of ROS. Raises StartError if the node can't start.
     """
 
-    def make(node: Node, log: str) -> tuple[Controller, Settings]:
+    def make(node: RunningNode, log: str) -> tuple[Controller, Settings]:
         settings = Settings(node.parameters(controller_parameters(graph, configuration, log)), configuration)
         return Controller(graph, settings, node, node.event_loop, safe), settings
 
@@ -48,7 +48,7 @@ def run_layer(
     Precondition: no two communications of the graph share a topic. Raises StartError if the node can't start.
     """
 
-    def make(node: Node, log: str) -> tuple[Layer, Settings]:
+    def make(node: RunningNode, log: str) -> tuple[Layer, Settings]:
         settings = Settings(node.parameters(layer_parameters(graph, configuration, log)), configuration)
         return Layer(graph, settings, node, node.event_loop, safe), settings
 
@@ -57,11 +57,11 @@ def run_layer(
 
 
 def _run(
-    node: Node,
+    node: RunningNode,
     name: str,
     graph: rosgraph.RosGraph,
     configuration: Configuration,
-    make: Callable[[Node, str], tuple[Controller | Layer, Settings]],
+    make: Callable[[RunningNode, str], tuple[Controller | Layer, Settings]],
 ) -> None:
     try:
         log = default_log(node.full_name, name) if configuration.write_events_to_log else ""
@@ -81,7 +81,7 @@ def _run(
     node.spin(handler)
 
 
-def _node(name: str, graph: rosgraph.RosGraph, configuration: Configuration, arguments: Sequence[str]) -> Node:
+def _node(name: str, graph: rosgraph.RosGraph, configuration: Configuration, arguments: Sequence[str]) -> RunningNode:
     from robosc.run.runtime.ros2.node import Ros2Node  # noqa: PLC0415  # reports what is missing if there is no ROS
 
     return Ros2Node(name, graph, configuration, arguments)

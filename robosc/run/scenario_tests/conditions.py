@@ -20,14 +20,14 @@ _NAMED = re.compile(r"`([\w.]+)`")
 
 
 @dataclass(frozen=True)
-class Extended:
+class ExtendedText:
     """Text of a robot with a property for each condition, one per line from line `first` on."""
 
     text: str
     first: int
     conditions: Sequence[Holds]
 
-    def told(self, finding: Diagnostic) -> Diagnostic:
+    def move_to_scenario(self, finding: Diagnostic) -> Diagnostic:
         """Return a finding with its place in the scenario file: at the condition that it is about."""
         number = finding.span.line - self.first
         if not 0 <= number < len(self.conditions):
@@ -46,17 +46,17 @@ class Extended:
     def expressions(self, model: sct.SupervisoryControlModel) -> list[ex.Expression]:
         """Remove the properties of the conditions from the model made of the text; return their expressions."""
         named = {declared.name: declared for declared in model.properties}
-        found = [named[_name(number)] for number in range(len(self.conditions))]
-        for declared in found:
+        properties = [named[_name(number)] for number in range(len(self.conditions))]
+        for declared in properties:
             model.properties.remove(declared)
-        return [declared.condition for declared in found]
+        return [declared.condition for declared in properties]
 
 
-def extended(text: str, end: int, conditions: Sequence[Holds]) -> Extended:
+def add_conditions(text: str, end: int, conditions: Sequence[Holds]) -> ExtendedText:
     """Return the text of a robot that ends at an offset, with the conditions added before its closing brace."""
     brace = text.rindex("}", 0, end)
     lines = "".join(f"{_before(number)}{condition.text})\n" for number, condition in enumerate(conditions))
-    return Extended(f"{text[:brace]}\n{lines}{text[brace:]}", text.count("\n", 0, brace) + 2, conditions)
+    return ExtendedText(f"{text[:brace]}\n{lines}{text[brace:]}", text.count("\n", 0, brace) + 2, conditions)
 
 
 def _name(number: int) -> str:

@@ -58,34 +58,36 @@ class LiveNode:
                 (folder / name).write_text(text, encoding="utf-8")
             log, played = folder / "events.jsonl", folder / "scenario.jsonl"
             played.write_text("".join(f"{line}\n" for line in trace), encoding="utf-8")
-            with (folder / "node.txt").open("w+b") as told, self._started(log, told) as node:
-                status, said = self._play(folder, played, log, node)
-                missing = _MISSING.search(said)
+            with (folder / "node.txt").open("w+b") as node_output, self._started(log, node_output) as node:
+                status, player_output = self._play(folder, played, log, node)
+                missing = _MISSING.search(player_output)
                 if status is None:
-                    raise LiveError(f"the node ended before the scenario:\n{_end(told)}")
+                    raise LiveError(f"the node ended before the scenario:\n{_end(node_output)}")
                 if missing is not None:
                     raise LiveError(f"this Python has no ROS 2: {missing[1]}")
                 if not status:
                     return None
-                found = _DIFFERENCE.search(said)
-                if found is None:
-                    message = f"playing over ROS failed: {said.strip()[-_SHOWN:]}"
-                    return scenario.line.fault(message, _end(told))
-        line = lines[int(found[1]) - 1] if int(found[1]) <= len(lines) else scenario.line
-        verdict = "this cannot be played over ROS" if found[2] else "the node deviates from the scenario"
-        return line.fault(f"{verdict}: {found[3].strip()}")
+                difference = _DIFFERENCE.search(player_output)
+                if difference is None:
+                    message = f"playing over ROS failed: {player_output.strip()[-_SHOWN:]}"
+                    return scenario.line.fault(message, _end(node_output))
+        line = lines[int(difference[1]) - 1] if int(difference[1]) <= len(lines) else scenario.line
+        verdict = "this cannot be played over ROS" if difference[2] else "the node deviates from the scenario"
+        return line.fault(f"{verdict}: {difference[3].strip()}")
 
     @contextmanager
-    def _started(self, log: Path, told: IO[bytes]) -> Iterator[subprocess.Popen[bytes]]:
-        given = {"event_log": str(log), **self.parameters}
-        values = {name: str(value).lower() if isinstance(value, bool) else str(value) for name, value in given.items()}
+    def _started(self, log: Path, output: IO[bytes]) -> Iterator[subprocess.Popen[bytes]]:
+        parameters = {"event_log": str(log), **self.parameters}
+        values = {
+            name: str(value).lower() if isinstance(value, bool) else str(value) for name, value in parameters.items()
+        }
         values["use_sim_time"] = "true"
         arguments = ["--ros-args", *(word for name in values for word in ("-p", f"{name}:={values[name]}"))]
         try:
             node = subprocess.Popen(  # noqa: S603  # the user gives the command that starts the node
                 [*self.command, *arguments],
                 stdin=subprocess.DEVNULL,
-                stdout=told,
+                stdout=output,
                 stderr=subprocess.STDOUT,
                 start_new_session=True,
             )
@@ -99,12 +101,12 @@ class LiveNode:
     def _play(self, folder: Path, played: Path, log: Path, node: subprocess.Popen[bytes]) -> tuple[int | None, str]:
         """Return the exit status and the output of the player; no status if the node ends first."""
         command: list[str | Path] = [sys.executable, folder / "play_trace.py", played, log]
-        with (folder / "player.txt").open("w+b") as told:
+        with (folder / "player.txt").open("w+b") as output:
             player = subprocess.Popen(  # noqa: S603  # this Python, and a program that was just written
                 command,
                 cwd=folder,
                 stdin=subprocess.DEVNULL,
-                stdout=told,
+                stdout=output,
                 stderr=subprocess.STDOUT,
                 start_new_session=True,
             )
@@ -116,13 +118,13 @@ class LiveNode:
                         player.wait(0.1)
             finally:
                 _ended(player)
-            told.seek(0)
-            return player.returncode, told.read().decode(errors="replace")
+            output.seek(0)
+            return player.returncode, output.read().decode(errors="replace")
 
 
-def _end(told: IO[bytes]) -> str:
-    told.seek(0)
-    return told.read().decode(errors="replace").strip()[-_SHOWN:]
+def _end(output: IO[bytes]) -> str:
+    output.seek(0)
+    return output.read().decode(errors="replace").strip()[-_SHOWN:]
 
 
 def _ended(process: subprocess.Popen[bytes]) -> None:

@@ -62,9 +62,9 @@ class Operations:
         if self._operations:
             self._operations[-1].withheld.add(event)
 
-    def compared(self, program: CProgram) -> Diagnostic | None:
+    def compare(self, program: CProgram) -> Diagnostic | None:
         """Return a finding for the first call after which the generated loop differs, else None."""
-        with program.running([program.follower]) as process:
+        with program.start_command([program.follower]) as process:
             lockstep = Lockstep(program.model, process)
             lockstep.begin(self._settings)
             began = lockstep.loop.timers.now
@@ -92,9 +92,9 @@ class Operations:
         if operation.name == "perform":
             event, *data = operation.arguments
             number = lockstep.names.index(event)
-            given = data[0] or {} if data else {}
+            values = data[0] or {} if data else {}
             domains = [(parameter.name, Domain(parameter.type)) for parameter in lockstep.events[number].inputs]
-            codes = (domain.internal(given[name]) - domain.low if name in given else 0 for name, domain in domains)
+            codes = (domain.internal(values[name]) - domain.low if name in values else 0 for name, domain in domains)
             lockstep.perform(number, tuple(codes))
         else:
             lockstep.operate({**_CALLS, "restart": "r"}[operation.name])

@@ -42,7 +42,7 @@ class Line:
 
 
 @dataclass(frozen=True)
-class Incoming(Line):
+class IncomingEvent(Line):
     """Incoming event from the robot; `event` is named as for `explain`, such as `scan` or `dock.error`.
 
     `data` is the data of the event as in the event log. `is_message`: it has all fields of the ROS message. `reason`:
@@ -78,7 +78,7 @@ class Holds(Line):
 
 
 @dataclass(frozen=True)
-class Allowed(Line):
+class Permission(Line):
     """Expectation that an event is allowed or forbidden, optionally by a certain requirement."""
 
     event: str
@@ -87,7 +87,7 @@ class Allowed(Line):
 
 
 @dataclass(frozen=True)
-class Sent(Line):
+class SentCommand(Line):
     """Expectation that a command was sent since the last step, or not; optionally with this data."""
 
     event: str
@@ -116,7 +116,7 @@ def read_scenarios(file: str, text: str) -> tuple[list[Scenario], list[Holds], l
         start_of_file = Line(file, Span(1, 1, 1, 1))
         reader.findings.append(start_of_file.fault("the file has no scenario", 'begin with `scenario "…"`'))
     for scenario in reader.scenarios:
-        if not any(isinstance(step, (Holds, Allowed, Sent)) for step in scenario.steps):
+        if not any(isinstance(step, (Holds, Permission, SentCommand)) for step in scenario.steps):
             reader.findings.append(scenario.line.fault("the scenario has no expectation", "write `expect …`"))
     return reader.scenarios, reader.conditions, sorted(reader.findings, key=lambda finding: finding.span.line)
 
@@ -170,8 +170,8 @@ class _Reader:
             steps += self._step(text, line)
 
     def _wait(self, text: str, line: Line) -> Iterator[Line]:
-        given = _WAIT.fullmatch(text)
-        seconds = float(given[1]) * _SECONDS[given[2]] if given else -1.0
+        match = _WAIT.fullmatch(text)
+        seconds = float(match[1]) * _SECONDS[match[2]] if match else -1.0
         if 0 <= seconds <= _LONGEST:
             yield Wait(line.file, line.span, seconds)
         else:
@@ -196,11 +196,11 @@ class _Reader:
         elif step.is_refusal:
             yield Refusal(line.file, line.span, step.event)
         else:
-            yield Incoming(line.file, line.span, step.event, step.data, step.is_message, step.reason)
+            yield IncomingEvent(line.file, line.span, step.event, step.data, step.is_message, step.reason)
 
     def _expected(self, text: str, line: Line) -> Iterator[Line]:
-        given = _EXPECTED.fullmatch(text)
-        if given is None:
+        match = _EXPECTED.fullmatch(text)
+        if match is None:
             if not text:
                 self.findings.append(
                     line.fault("`expect` has no expectation", "write `expect move allowed`, or a condition")
@@ -214,20 +214,20 @@ class _Reader:
                 return
             self.conditions.append(Holds(line.file, span, text, len(self.conditions)))
             yield self.conditions[-1]
-        elif given["sent"]:
-            expected = given["sent"] == "sent"
-            data = self._data(text, given, line)
+        elif match["sent"]:
+            expected = match["sent"] == "sent"
+            data = self._data(text, match, line)
             if not expected and data is not None:
                 self.findings.append(line.fault("`not sent` cannot have data", "leave out `with …`"))
-            yield Sent(line.file, line.span, event_in_words(given), expected, data)
+            yield SentCommand(line.file, line.span, event_in_words(match), expected, data)
         else:
-            by = given["by"].strip().strip('"') if given["by"] else None
-            yield Allowed(line.file, line.span, event_in_words(given), bool(given["forbidden"]), by)
+            by = match["by"].strip().strip('"') if match["by"] else None
+            yield Permission(line.file, line.span, event_in_words(match), bool(match["forbidden"]), by)
 
-    def _data(self, text: str, given: re.Match[str], line: Line) -> Any:
+    def _data(self, text: str, match: re.Match[str], line: Line) -> Any:
         """Return the data at the end of an expectation; None if there is none, or if it can't be parsed."""
         try:
-            return data_in_words(text, given.start("data")) if given["data"] else None
+            return data_in_words(text, match.start("data")) if match["data"] else None
         except StepError as error:
             self._unread(error, text, line)
             return None

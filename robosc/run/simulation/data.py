@@ -22,7 +22,7 @@ from robosc.model.semantics.messages import is_structured, receptions, source_of
 from robosc.model.semantics.operators import UnreadableError
 from robosc.model.semantics.roles import event_name, plant_of
 from robosc.model.semantics.walks import operands
-from robosc.run.runtime.core.event_log import nested
+from robosc.run.runtime.core.event_log import nest
 from robosc.run.runtime.core.node_data import NodeData
 from robosc.run.simulation.unreadable import Unreadable, past_end
 from robosc.run.simulation.wire_fit import DIGITS, WireFit, in_short, place
@@ -58,30 +58,30 @@ def data_beside(graph: rosgraph.RosGraph, event: sct.Event) -> dict[tuple[str, .
 
     The result is empty if an input of the event is a condition on the data: the data would determine it.
     """
-    given = [
+    assignments = [
         assignment
         for reception in receptions(graph)
         if reception.event == event
         for assignment in reception.inputs
         if not is_reason(assignment.input)
     ]
-    if any(assignment.input.text is not None for assignment in given):
+    if any(assignment.input.text is not None for assignment in assignments):
         return {}
-    told = [tuple(map(_field, _access(assignment).steps)) for assignment in given]
-    kept = [
+    input_paths = [tuple(map(_field, _access(assignment).steps)) for assignment in assignments]
+    stored_values = [
         assigned.value
         for reaction in graph.reactions
         if reaction.event == event
         for assigned in reaction.assignments
         if not is_structured(assigned.variable.type)
     ]
-    found: dict[tuple[str, ...], ex.Type] = {}
-    for _, part in (read for value in kept for read in tree(value)):
+    types_by_path: dict[tuple[str, ...], ex.Type] = {}
+    for _, part in (inner for value in stored_values for inner in tree(value)):
         match part:
             case rosgraph.WireAccess(variable=None, quantifier=None, type=ex.Type() as kind) if type(kind) in _BASIC:
                 if all(isinstance(step, rosgraph.FieldStep) for step in part.steps):
-                    found[tuple(map(_field, part.steps))] = kind
-    return {path: kind for path, kind in found.items() if path not in told}
+                    types_by_path[tuple(map(_field, part.steps))] = kind
+    return {path: kind for path, kind in types_by_path.items() if path not in input_paths}
 
 
 def reason_of(event: sct.Event, data: Mapping[str, Any]) -> str | None:
@@ -120,7 +120,7 @@ class EventData:
         self._defaults = None if graph is None else WireFit(graph, types)
         self._node = None if graph is None else _JsonData(graph, engine)
         known = [] if graph is None else receptions(graph)
-        self._assignments = {given.input: given for reception in known for given in reception.inputs}
+        self._assignments = {assignment.input: assignment for reception in known for assignment in reception.inputs}
         self._receptions = {event_name(reception.event): reception for reception in known}
         clients: list[rosgraph.ServiceClient | rosgraph.ActionClient] = []
         clients += [] if graph is None else [*graph.serviceClients, *graph.actionClients]
@@ -142,24 +142,30 @@ class EventData:
         if data and not declared.inputs:
             return {}  # stored by the node, or unused
         value = data.get("value", _ABSENT)
-        found = {}
-        for given in declared.inputs:
-            domain = Domain(given.type)
+        values = {}
+        for event_input in declared.inputs:
+            domain = Domain(event_input.type)
             try:
-                if is_reason(given) and ("reason" in data or given.text not in computed):
-                    told: Value = reason or ""
+                if is_reason(event_input) and ("reason" in data or event_input.text not in computed):
+                    external_value: Value = reason or ""
                 else:
-                    told = computed[given.text] if given.text in computed else self._value(event, given, value)
-                found[given.name] = domain.shown(domain.internal(told))
+                    external_value = (
+                        computed[event_input.text]
+                        if event_input.text in computed
+                        else self._value(event, event_input, value)
+                    )
+                values[event_input.name] = domain.external(domain.internal(external_value))
             except ValueError as error:
-                raise DataError(f"{self._label(given, value)}: {error}") from None
-        return found
+                raise DataError(f"{self._label(event_input, value)}: {error}") from None
+        return values
 
-    def _label(self, given: sct.Input, data: Any = None) -> str:
+    def _label(self, event_input: sct.Input, data: Any = None) -> str:
         """Return the text of an input, or its place in the data of its event."""
-        if given.text is not None:
-            return str(given.text)
-        return place(self._path(given) if given in self._assignments else tuple(_names(data, _words(given))))
+        if event_input.text is not None:
+            return str(event_input.text)
+        return place(
+            self._path(event_input) if event_input in self._assignments else tuple(_names(data, _words(event_input)))
+        )
 
     def unreadable(self, event: str, data: Mapping[str, Any]) -> Unreadable | None:
         """Return why the node can't read this data in the present state; None if it can, as far as the data is given.
@@ -232,8 +238,12 @@ class EventData:
             return
         assert self._defaults is not None
         new = self.inputs(event, {"reason": reason})
-        changed = (given for given in declared.inputs if given.name in inputs and inputs[given.name] != new[given.name])
-        parts = [f"`{self._label(given)}` is {in_short(inputs[given.name])}" for given in changed]
+        changed = (
+            event_input
+            for event_input in declared.inputs
+            if event_input.name in inputs and inputs[event_input.name] != new[event_input.name]
+        )
+        parts = [f"`{self._label(event_input)}` is {in_short(inputs[event_input.name])}" for event_input in changed]
         if "value" in data:
             set_part = self._defaults.set_part(event, data["value"], partial(self._new_literal, event))
             parts = [set_part, *parts] if set_part else parts
@@ -245,26 +255,33 @@ class EventData:
         assert self._node is not None
         return str(self._node.literal(conversion, self._received(event, _ABSENT, path)))
 
-    def fitting(self, event: str, values: Mapping[str, Value]) -> dict[str, Value]:
+    def fit_reason(self, event: str, values: Mapping[str, Value]) -> dict[str, Value]:
         """Return values of an event's inputs, with those replaced that do not fit its reason."""
         declared = self._events[event]
-        reason = next((given.name for given in declared.inputs if is_reason(given)), None)
+        reason = next((event_input.name for event_input in declared.inputs if is_reason(event_input)), None)
         if reason is None:
             return dict(values)
         if not brings_data(declared, str(values[reason])):
             return self.inputs(event, {"reason": values[reason]})
-        if self.unreadable(event, self.shaped(event, values)) is None:
+        if self.unreadable(event, self.shape(event, values)) is None:
             return dict(values)
         return {**values, reason: possible_reasons(declared)[0]}
 
-    def shaped(
+    def shape(
         self, event: str, values: Mapping[str, Value], others: Mapping[tuple[str, ...], Any] | None = None
     ) -> dict[str, Any]:
         """Return data that gives the event's inputs these values, by name; `others` are further values by path."""
         inputs = self._events[event].inputs
-        reasons = [values[given.name] for given in inputs if is_reason(given)]
-        where = {given.text: values[given.name] for given in inputs if given.text is not None and not is_reason(given)}
-        paths = {**(others or {}), **{self._path(given): values[given.name] for given in inputs if given.text is None}}
+        reasons = [values[event_input.name] for event_input in inputs if is_reason(event_input)]
+        where = {
+            event_input.text: values[event_input.name]
+            for event_input in inputs
+            if event_input.text is not None and not is_reason(event_input)
+        }
+        paths = {
+            **(others or {}),
+            **{self._path(event_input): values[event_input.name] for event_input in inputs if event_input.text is None},
+        }
         shown: dict[str, Any] = {"where": where} if where else {}
         if reasons:
             shown["reason"] = reasons[0]
@@ -272,44 +289,44 @@ class EventData:
             return shown
         if len(paths) == 1 and next(iter(paths)) in ((), ("data",)):  # as in an event log
             return {"value": next(iter(paths.values())), **shown}
-        return {"value": nested(paths), **shown}
+        return {"value": nest(paths), **shown}
 
-    def _path(self, given: sct.Input) -> tuple[str, ...]:
+    def _path(self, event_input: sct.Input) -> tuple[str, ...]:
         """Return the path of an input in the data of its event."""
-        assignment = self._assignments.get(given)
-        return tuple(_words(given)) if assignment is None else tuple(map(_field, _access(assignment).steps))
+        assignment = self._assignments.get(event_input)
+        return tuple(_words(event_input)) if assignment is None else tuple(map(_field, _access(assignment).steps))
 
-    def _received(self, event: str, data: Any, path: tuple[str, ...] = ()) -> _Given:
-        return _Given(data, path, self._defaults, event)
+    def _received(self, event: str, data: Any, path: tuple[str, ...] = ()) -> _EventValues:
+        return _EventValues(data, path, self._defaults, event)
 
-    def _value(self, event: str, given: sct.Input, data: Any) -> Value:
-        assignment = self._assignments.get(given)
-        if given.text is not None:
+    def _value(self, event: str, event_input: sct.Input, data: Any) -> Value:
+        assignment = self._assignments.get(event_input)
+        if event_input.text is not None:
             if assignment is None or self._node is None:
-                return _default(given.type)
+                return _default(event_input.type)
             received = self._received(event, data if data is _ABSENT else whole(data, assignment.value))
             return self._node.input(assignment, received)  # type: ignore[no-any-return]
-        found = _fields(data, _words(given)) if assignment is None else _reached(data, _access(assignment))
+        reached = _fields(data, _words(event_input)) if assignment is None else _reached(data, _access(assignment))
         source = None if assignment is None else assignment.value
         if self._node is None or not isinstance(source, rosgraph.ConversionCall):
-            if found is not _ABSENT:
-                return found  # type: ignore[no-any-return]
-            default = 0 if assignment is None else self._received(event, found, self._path(given)).default
-            return _default(given.type, default)
+            if reached is not _ABSENT:
+                return reached  # type: ignore[no-any-return]
+            default = 0 if assignment is None else self._received(event, reached, self._path(event_input)).default
+            return _default(event_input.type, default)
         conversion = source.conversion
-        if found is _ABSENT:
-            path = self._path(given)
+        if reached is _ABSENT:
+            path = self._path(event_input)
             return self._new_literal(event, conversion, path) if self._is_new else str(conversion.default.name)
-        if isinstance(found, str) and found in {literal.name for literal in conversion.enumeration.literals}:
-            return found
+        if isinstance(reached, str) and reached in {literal.name for literal in conversion.enumeration.literals}:
+            return reached
         try:
-            return str(self._node.literal(conversion, self._received(event, found, self._path(given))))
+            return str(self._node.literal(conversion, self._received(event, reached, self._path(event_input))))
         except DataError as error:
             literals = ", ".join(literal.name for literal in conversion.enumeration.literals)
             raise DataError(f"expected one of {literals}, or data that determines it: {error}") from None
 
 
-class _Given(NamedTuple):
+class _EventValues(NamedTuple):
     """JSON in place of data from ROS, and its path in the data of its event."""
 
     value: Any
@@ -317,7 +334,7 @@ class _Given(NamedTuple):
     defaults: WireFit | None
     event: str
 
-    def below(self, value: Any, step: str) -> _Given:
+    def below(self, value: Any, step: str) -> _EventValues:
         """Return a field or an element."""
         return self._replace(value=value, path=(*self.path, step))
 
@@ -346,15 +363,15 @@ class _Given(NamedTuple):
 class _JsonData(NodeData):
     """Node data that reads JSON in place of data from ROS."""
 
-    def literal(self, conversion: rosgraph.Conversion, data: _Given) -> str:
+    def literal(self, conversion: rosgraph.Conversion, data: _EventValues) -> str:
         """Return the literal that a conversion makes of data. Raises DataError, also for data of unused rules."""
-        for _, part in [read for rule in conversion.rules for read in tree(rule.condition)]:
+        for _, part in [inner for rule in conversion.rules for inner in tree(rule.condition)]:
             if isinstance(part, rosgraph.WireAccess) and part.quantifier is None and not operands(part):
                 with suppress(UnreadableError):
                     self.leaf(self._reach(part, data), part.type)
         return str(self.convert(conversion, data).name)
 
-    def _field(self, owner: _Given, name: str) -> _Given:
+    def _field(self, owner: _EventValues, name: str) -> _EventValues:
         value = owner.value
         if value is not _ABSENT and not isinstance(value, dict):
             raise DataError(f"{owner.place} is {in_short(value)}, expected an object with {name}")
@@ -369,7 +386,7 @@ class _JsonData(NodeData):
     def leaf(self, value: Any, kind: ex.Type | None) -> Any:
         if isinstance(kind, rosgraph.ArrayType):
             return super().leaf(_list(value), kind)
-        if kind is None or not isinstance(value, _Given):
+        if kind is None or not isinstance(value, _EventValues):
             return value  # an object, or an element of an array that was read as a whole
         return super().leaf(_basic(value, kind), kind)
 
@@ -377,7 +394,7 @@ class _JsonData(NodeData):
 class _Array(Sequence[Any]):
     """Elements of an array in JSON, with their places; the array may be long and have few."""
 
-    def __init__(self, array: _Given) -> None:
+    def __init__(self, array: _EventValues) -> None:
         self._array = array
         self._elements = _elements(array)
         self._length = max(max(self._elements, default=-1) + 1, array.length)
@@ -393,12 +410,12 @@ class _Array(Sequence[Any]):
         return self._array.below(self._elements.get(index, _ABSENT), str(index))
 
 
-def _list(array: _Given | list[_Given]) -> Sequence[_Given]:
+def _list(array: _EventValues | list[_EventValues]) -> Sequence[_EventValues]:
     """Return the elements of an array in JSON; a slice is returned unchanged."""
-    return _Array(array) if isinstance(array, _Given) else array
+    return _Array(array) if isinstance(array, _EventValues) else array
 
 
-def _elements(array: _Given) -> dict[int, Any]:
+def _elements(array: _EventValues) -> dict[int, Any]:
     data = array.value
     if data is _ABSENT:
         return {}
@@ -409,22 +426,22 @@ def _elements(array: _Given) -> dict[int, Any]:
     raise DataError(f"{array.place} is {in_short(data)}, expected a list, or an object from index to element")
 
 
-def _basic(given: _Given, kind: ex.Type | None) -> Any:
+def _basic(leaf: _EventValues, kind: ex.Type | None) -> Any:
     name, plain, zero = next((basic for known, basic in _BASIC.items() if isinstance(kind, known)), ("", object, 0))
-    data = given.value
+    data = leaf.value
     if data is _ABSENT:
-        default = given.default
+        default = leaf.default
         return zero if default is None else default
     if data is None and isinstance(kind, ex.DoubleType):
         return math.nan  # an event log writes null for a number that is not finite
     if not isinstance(data, plain) or (isinstance(data, bool) and name in {"an integer", "a number"}):
-        raise DataError(f"{given.place} is {in_short(data)}, expected {name}")
+        raise DataError(f"{leaf.place} is {in_short(data)}, expected {name}")
     return as_double(data) if isinstance(kind, ex.DoubleType) else data
 
 
 def _computed(event: sct.Event, where: Any) -> Mapping[str | None, Value]:
     """Return the conditions on data that a script gives, by their texts in the model. Raises DataError."""
-    texts = [given.text for given in event.inputs if given.text is not None]
+    texts = [event_input.text for event_input in event.inputs if event_input.text is not None]
     if not isinstance(where, dict) or not set(where) <= set(texts):
         expected = f"the texts {', '.join(f'`{text}`' for text in texts)}" if texts else "no `where`"
         raise DataError(f'"where" is {in_short(where)}, expected an object with {expected}')
@@ -440,9 +457,11 @@ def _reads_kept(expression: ex.Expression) -> bool:
     )
 
 
-def whole(data: Any, read: ex.Expression) -> Any:
+def whole(data: Any, reference: ex.Expression) -> Any:
     """Return the data with its fields: a lone value stands for the only field on the path to it."""
-    accesses = (part for _, part in tree(read) if isinstance(part, rosgraph.WireAccess) and part.quantifier is None)
+    accesses = (
+        part for _, part in tree(reference) if isinstance(part, rosgraph.WireAccess) and part.quantifier is None
+    )
     access = next(accesses, None)
     if access is None or isinstance(data, dict) or len(access.steps) != 1:
         return data
@@ -493,10 +512,10 @@ def _names(data: Any, words: list[str]) -> list[str]:
     return [name, *_names(data.get(name) if isinstance(data, dict) else None, rest)]
 
 
-def _words(given: sct.Input) -> list[str]:
-    return str(given.name).split("_")[2:]
+def _words(event_input: sct.Input) -> list[str]:
+    return str(event_input.name).split("_")[2:]
 
 
 def _default(kind: ex.Type, value: Any = 0) -> Value:
     domain = Domain(kind)
-    return domain.shown(domain.clamp(0 if value is None else int(value)))
+    return domain.external(domain.clamp(0 if value is None else int(value)))

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from robosc.engine import Blocked
     from robosc.engine.state import State
     from robosc.model import sct
-    from robosc.run.simulation import Simulation, Step
+    from robosc.run.simulation import ScriptStep, Simulation
     from robosc.run.simulation.unreadable import Unreadable
 
 
@@ -64,7 +64,7 @@ class Replay:
     def __init__(
         self,
         simulation: Simulation,
-        steps: Sequence[Step] | None = None,
+        steps: Sequence[ScriptStep] | None = None,
         seed: int = 0,
         choose: Callable[[Random], tuple[str, dict[str, Any]] | None] | None = None,
     ) -> None:
@@ -150,7 +150,7 @@ class Replay:
             moments.append(self._keep(self._here, self._wait(self._until)))
         return moments
 
-    def _scripted(self, steps: Sequence[Step]) -> Moment | None:
+    def _scripted(self, steps: Sequence[ScriptStep]) -> Moment | None:
         if self._next == len(steps):
             return None
         step, here = steps[self._next], self._here
@@ -186,7 +186,7 @@ class Replay:
         edges: tuple[sct.Edge, ...] = ()
         if by is None:
             self.engine.set_inputs(event, inputs)
-            edges = self._transitions.taken(event)
+            edges = self._transitions.taken_transitions(event)
             self.timers.before(event)
             self.simulation.perform(event, data)
         return Moment(event, dict(data), before, self.engine.state, line, by, edges)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from robosc.analysis.explain import NamingError, event_named
+from robosc.analysis.explain import NamingError, find_event
 from robosc.base.diagnostics import Diagnostic, Severity, Span
 from robosc.base.files.json_reading import JsonError, json_lines, json_value
 from robosc.model.semantics.failures import brings_data
@@ -34,7 +34,7 @@ _LATEST = 1e12
 
 
 @dataclass(frozen=True)
-class Step:
+class ScriptStep:
     """Line of a script: an event, or `tick`, `begin` or `end` for a control loop.
 
     `wait` has its `seconds` as data. `refuse cancel` has the name of the action's plant as `of`. `time` is the time in
@@ -53,7 +53,7 @@ def read_script(
     events: Collection[str],
     others: Collection[str] = (),
     model: sct.SupervisoryControlModel | None = None,
-) -> tuple[list[Step], list[Diagnostic]]:
+) -> tuple[list[ScriptStep], list[Diagnostic]]:
     """Parse a script; return its steps and findings about its text. `events` are the names that it may use.
 
     `others` are names that it may use only with `--loop`, or only without. `model` has the events that words name.
@@ -62,21 +62,21 @@ def read_script(
     keys of an event log are ignored). With a model it may also be a step of a scenario, such as
     `error from lift because timeout`. Empty lines and lines that begin with `#` are no steps.
     """
-    steps: list[Step] = []
+    steps: list[ScriptStep] = []
     findings: list[Diagnostic] = []
     names = _Names(events, others, model)
     for number, line in enumerate(json_lines(text), 1):
         if not line.strip() or line.lstrip().startswith("#"):
             continue
-        read = _Line(file, number, line, names)
-        found = read.step()
-        if found is not None:
-            steps.append(found)
-        findings += read.findings
+        parsed_line = _Line(file, number, line, names)
+        step = parsed_line.step()
+        if step is not None:
+            steps.append(step)
+        findings += parsed_line.findings
     return steps, findings
 
 
-def unfit_data(file: str, steps: Iterable[Step], data: EventData) -> Iterator[Diagnostic]:
+def unfit_data(file: str, steps: Iterable[ScriptStep], data: EventData) -> Iterator[Diagnostic]:
     """Yield findings about data that does not fit its event, before any step is played."""
     for step in steps:
         try:
@@ -95,7 +95,7 @@ def spoken(model: sct.SupervisoryControlModel, text: str) -> tuple[str, dict[str
     step = step_in_words(text)
     if step is None or step.is_bare:
         return None
-    event = event_named(model, step.event)
+    event = find_event(model, step.event)
     if step.is_refusal:
         return REFUSE, {"of": plant_of(event).name}
     if step.data is not None and not brings_data(event, step.reason):
@@ -124,7 +124,7 @@ class _Line:
         self._start = len(line) - len(line.lstrip())
         self.findings: list[Diagnostic] = []
 
-    def step(self) -> Step | None:
+    def step(self) -> ScriptStep | None:
         if self._line[self._start] == "{":
             logged = self._json(self._start)
             if logged is None:
@@ -139,7 +139,7 @@ class _Line:
             return (
                 self._wait(str(data.get("seconds", "")))
                 if known and name == WAIT
-                else Step(self._number, name, data, _seconds(logged.get("time")))
+                else ScriptStep(self._number, name, data, _seconds(logged.get("time")))
                 if known
                 else None
             )
@@ -151,13 +151,13 @@ class _Line:
         if known and name == WAIT:
             return self._wait(rest)
         data = self._json(len(self._line) - len(rest.lstrip())) if rest.strip() else {}
-        return Step(self._number, name, data) if known and data is not None else None
+        return ScriptStep(self._number, name, data) if known and data is not None else None
 
     def _place(self, *texts: str) -> int:
         """Return the column, from 0, of the first of some texts that the line has; its start if it has none."""
         return next((self._line.index(text) for text in texts if text in self._line), self._start)
 
-    def _in_words(self, model: sct.SupervisoryControlModel, word: str) -> Step | None:
+    def _in_words(self, model: sct.SupervisoryControlModel, word: str) -> ScriptStep | None:
         try:
             step = spoken(model, self._line.strip())
         except NamingError as error:
@@ -171,15 +171,15 @@ class _Line:
             self._fault(self._start, "this is not a step of a scenario", hint, len(word))
             return None
         event, data = step
-        return Step(self._number, event, data) if event == REFUSE or self._known(event, self._start) else None
+        return ScriptStep(self._number, event, data) if event == REFUSE or self._known(event, self._start) else None
 
-    def _wait(self, seconds: str) -> Step | None:
+    def _wait(self, seconds: str) -> ScriptStep | None:
         try:
-            given = float(seconds)
+            duration = float(seconds)
         except ValueError:
-            given = -1.0
-        if 0.0 <= given <= _LONGEST_WAIT:
-            return Step(self._number, WAIT, {"seconds": given})
+            duration = -1.0
+        if 0.0 <= duration <= _LONGEST_WAIT:
+            return ScriptStep(self._number, WAIT, {"seconds": duration})
         self._fault(self._start, f"`wait` needs a number of seconds from 0 to {_LONGEST_WAIT}", "write `wait 3.0`", 4)
         return None
 
@@ -199,14 +199,14 @@ class _Line:
 
     def _json(self, column: int) -> dict[str, Any] | None:
         try:
-            read = json_value(self._line[column:])
+            parsed = json_value(self._line[column:])
         except JsonError as error:
             self._fault(column + error.position, str(error), error.hint)
             return None
-        if not isinstance(read, dict):
+        if not isinstance(parsed, dict):
             self._fault(column, "data is an object", f'write {{"value": {self._line[column:].strip()}}}')
             return None
-        return read
+        return parsed
 
     def _fault(self, column: int, message: str, hint: str | None = None, length: int = 1) -> None:
         span = Span(self._number, column + 1, self._number, column + 1 + length)

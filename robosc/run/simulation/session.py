@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from robosc.base.diagnostics import Diagnostic
     from robosc.engine import Blocked
-    from robosc.run.simulation.simulation import Happened, Simulation
+    from robosc.run.simulation.simulation import RequestResult, Simulation
 
 HELP = """\
 NUMBER or EVENT, with its data in JSON: perform it, as in  1 {"value": 3}
@@ -166,7 +166,7 @@ def _number(text: str) -> int | None:
     return number if number <= MOST_AT_ONCE else None
 
 
-def trace_line(happened: Happened) -> str:
+def trace_line(happened: RequestResult) -> str:
     """Return an event as a line for scripts and `load`: the event log's shape, without time and direction."""
     line: dict[str, object] = {"event": happened.event}
     if happened.data:

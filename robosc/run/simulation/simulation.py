@@ -42,7 +42,7 @@ def whole_state(engine: Engine) -> dict[str, Value]:
 
 
 @dataclass(frozen=True)
-class Happened:
+class RequestResult:
     """Requested event: whether it happened, else what blocked it, and the state afterwards."""
 
     event: str
@@ -58,8 +58,8 @@ class Happened:
     def answer(self) -> dict[str, Any]:
         """Return the object that `simulate --script` prints."""
         by = None if self.by is None else str(self.by)
-        given = dict(self.data) if self.event == REFUSE else {}
-        return {"event": self.event, **given, "accepted": self.accepted, "by": by, "state": dict(self.state)}
+        details = dict(self.data) if self.event == REFUSE else {}
+        return {"event": self.event, **details, "accepted": self.accepted, "by": by, "state": dict(self.state)}
 
 
 def refusal(engine: Engine, action: str) -> Blocked | None:
@@ -89,7 +89,7 @@ class Simulation:
         """`types`: the definitions of ROS types, for fields missing in data; None: those of the environment."""
         self.engine = Engine(model)
         self.data = EventData(self.engine, graph, types)
-        self.trace: list[Happened] = []
+        self.trace: list[RequestResult] = []
         self._before: list[State] = []
         self._inputs = {event_name(event): list(event.inputs) for plant in model.plants for event in plant.events}
 
@@ -98,26 +98,26 @@ class Simulation:
         """The enabled events, in the order of the model."""
         return [event for event in self.engine.events if self.engine.enabled(event)]
 
-    def perform(self, event: str, data: Mapping[str, Any] | None = None) -> Happened:
+    def perform(self, event: str, data: Mapping[str, Any] | None = None) -> RequestResult:
         """Perform an event with data in the shape of the event log if it is enabled, else change nothing.
 
         A refusal to cancel a goal changes nothing, too. Raises DataError, and KeyError for an unknown event.
         """
         if event == REFUSE:
-            given = data or {}
-            return Happened(event, given, refusal(self.engine, given["of"]), whole_state(self.engine))
+            arguments = data or {}
+            return RequestResult(event, arguments, refusal(self.engine, arguments["of"]), whole_state(self.engine))
         inputs = self.data.inputs(event, data or {})
         before = self.engine.state
         by = self.engine.blocked_by(event) or self.data.unreadable(event, data or {})
         if by is None:
             self.engine.perform(event, inputs)
-        happened = Happened(event, data or {}, by, whole_state(self.engine))
+        happened = RequestResult(event, data or {}, by, whole_state(self.engine))
         if by is None:
             self._before.append(before)
             self.trace.append(happened)
         return happened
 
-    def undo(self) -> Happened | None:
+    def undo(self) -> RequestResult | None:
         """Take back the last event that happened and return it; None if there is none."""
         if not self.trace:
             return None
@@ -130,10 +130,10 @@ class Simulation:
         if not enabled:
             return None
         event = random.choice(enabled)
-        values = {given.name: _any(given.type, random) for given in self._inputs[event]}
-        return event, self.data.shaped(event, self.data.fitting(event, values))
+        values = {event_input.name: _any(event_input.type, random) for event_input in self._inputs[event]}
+        return event, self.data.shape(event, self.data.fit_reason(event, values))
 
-    def random_step(self, random: Random) -> Happened | None:
+    def random_step(self, random: Random) -> RequestResult | None:
         """Perform one of the enabled events, with random data; return None if none is enabled."""
         chosen = self.random_event(random)
         return None if chosen is None else self.perform(*chosen)
@@ -147,7 +147,7 @@ class Simulation:
         if by is Blocked.PLANT:
             return "the robot is not ready for it"
         if by is Blocked.REQUIREMENT:
-            texts = [failing.text for failing in self.engine.failing(event) if failing.text]
+            texts = [failing.text for failing in self.engine.failing_requirements(event) if failing.text]
             return f"forbidden by {' and '.join(texts) or 'a requirement'}"
         supervisor = self.engine.model.supervisor
         assert supervisor is not None
@@ -215,10 +215,10 @@ class LoopSimulation:
                 self._loop.perform(by.error, self.data.inputs(by.error, self.data.of_unreadable(data)))
             if not self._in_batch:
                 self._loop.end()
-        given = dict(data) if event in (WAIT, REFUSE) else {}
+        details = dict(data) if event in (WAIT, REFUSE) else {}
         return {
             "event": event,
-            **given,
+            **details,
             "accepted": by is None,
             "by": None if by is None else str(by),
             "happened": list(self._happened),

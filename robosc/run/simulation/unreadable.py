@@ -110,14 +110,14 @@ def _known(condition: ex.Expression, value: Any) -> bool | None:
         return None
 
 
-def read(value: Any, reference: ex.Expression, *given: Any) -> Value:
-    """Return what a reference reads of a value; `given` are its indices, after the element of its quantifier, if any.
+def read(value: Any, reference: ex.Expression, *indices: Any) -> Value:
+    """Return what a reference reads of a value; `indices` are its indices, after the element of its quantifier, if any.
 
     Raises UnknownError and UnreadableError.
     """
     if not isinstance(reference, rosgraph.WireAccess) or reference.variable is not None:
         raise UnknownError
-    rest = iter(given if reference.quantifier else (value, *given))
+    rest = iter(indices if reference.quantifier else (value, *indices))
     reached = next(rest)
     for step in reference.steps:
         if isinstance(step, rosgraph.SliceStep):
@@ -132,8 +132,8 @@ def read(value: Any, reference: ex.Expression, *given: Any) -> Value:
             reached = _elements(reached)[index]
         else:
             reached = _below(reached, step)
-    found: Value = _leaf(reached, reference.type)
-    return found
+    leaf: Value = _leaf(reached, reference.type)
+    return leaf
 
 
 def _leaf(reached: Any, kind: ex.Type | None) -> Any:

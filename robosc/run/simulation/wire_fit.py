@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robosc.base.ros_types import DefinitionError, RosDistribution, RosTypes, Section
 from robosc.base.ros_types.unknown_fields import unknown_field
-from robosc.base.ros_types.wire import INTEGER_RANGES, PRIMITIVES, Basic, Nested, Sequence, WireType
+from robosc.base.ros_types.wire import INTEGER_RANGES, PRIMITIVES, Basic, NestedType, Sequence, WireType
 from robosc.model import expression as ex
 from robosc.model import rosgraph
-from robosc.model.semantics.messages import EACH, Read, kept_reads, receptions, sections
+from robosc.model.semantics.messages import EACH, MessageRead, kept_reads, receptions, sections
 from robosc.model.semantics.messages import reads as all_reads
 from robosc.model.semantics.roles import event_name
 
@@ -60,7 +60,7 @@ class _Kind(NamedTuple):
     @property
     def fields(self) -> Mapping[str, WireType] | None:
         """The fields of an object; None if they are unknown."""
-        if not isinstance(self.type, Nested):
+        if not isinstance(self.type, NestedType):
             return None
         try:
             return self.distribution.fields(self.type.package, self.type.name, self.section)
@@ -70,14 +70,14 @@ class _Kind(NamedTuple):
     @property
     def is_known(self) -> bool:
         """Whether the definition of the type is known."""
-        return not isinstance(self.type, Nested) or self.fields is not None
+        return not isinstance(self.type, NestedType) or self.fields is not None
 
     def inside(self, step: str, *, is_element: bool) -> _Kind | None:
         """Return the type of a field or an element; None if it is unknown."""
         if is_element:
             return self._replace(type=self.type.at(int(step))) if isinstance(self.type, Sequence) else None
-        found = (self.fields or {}).get(step)
-        return None if found is None else self._replace(type=found, section=Section.MESSAGE)
+        field_type = (self.fields or {}).get(step)
+        return None if field_type is None else self._replace(type=field_type, section=Section.MESSAGE)
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,7 @@ class _Part:
 
     value: Any
     kinds: tuple[_Kind, ...]
-    reads: tuple[tuple[Path, Read], ...]
+    reads: tuple[tuple[Path, MessageRead], ...]
     path: Path = ()
     is_lone: bool = False
     literals: bool = True
@@ -104,7 +104,7 @@ class _Part:
     def is_literal(self) -> bool:
         """Whether it is the name of a literal of an enumeration that is made of the part."""
         return isinstance(self.value, str) and any(
-            self.value == literal.name for made in self.conversions for literal in made.enumeration.literals
+            self.value == literal.name for conversion in self.conversions for literal in conversion.enumeration.literals
         )
 
     @property
@@ -124,12 +124,12 @@ class _Part:
             step = str(key)
             kinds = (kind.inside(step, is_element=is_array) for kind in self.kinds)
             reads = (
-                (path[1:], read)
-                for path, read in self.reads
+                (path[1:], message_read)
+                for path, message_read in self.reads
                 if path and (path[0] == step or (is_array and _is_index(path[0])))
             )
             yield replace(
-                _opened(tuple(reads), self.literals),
+                _open_part(tuple(reads), self.literals),
                 value=value,
                 kinds=tuple(kind for kind in kinds if kind is not None),
                 path=(*self.path, step),
@@ -146,17 +146,17 @@ def place(path: Path) -> str:
     return "value" + "".join(f"[{step}]" if step.isdigit() else f".{step}" for step in path)
 
 
-def _opened(reads: tuple[tuple[Path, Read], ...], literals: bool) -> _Part:
+def _open_part(reads: tuple[tuple[Path, MessageRead], ...], literals: bool) -> _Part:
     """Return a part with its reads, also those by the rules of enumerations."""
-    opened: list[tuple[Path, Read]] = []
+    opened: list[tuple[Path, MessageRead]] = []
     conversions: list[rosgraph.Conversion] = []
     pending = list(reads)
     while pending:
-        path, read = pending.pop()
-        opened.append((path, read))
-        if not path and read.conversion is not None and read.conversion not in conversions:
-            conversions.append(read.conversion)
-            pending += all_reads([rule.condition for rule in read.conversion.rules])
+        path, message_read = pending.pop()
+        opened.append((path, message_read))
+        if not path and message_read.conversion is not None and message_read.conversion not in conversions:
+            conversions.append(message_read.conversion)
+            pending += all_reads([rule.condition for rule in message_read.conversion.rules])
     return _Part(None, (), tuple(opened), literals=literals, conversions=tuple(conversions) if literals else ())
 
 
@@ -167,16 +167,18 @@ class WireFit:
         """`types`: the definitions of ROS types; None: those of the environment."""
         self._types = types
         self._sections = sections(graph)
-        self._reads: dict[str, tuple[tuple[Path, Read], ...]] = {}
+        self._reads: dict[str, tuple[tuple[Path, MessageRead], ...]] = {}
         values: dict[str, list[ex.Expression]] = {}
         for reception in receptions(graph):
             name = event_name(reception.event)
-            values[name] = [given.value for given in reception.inputs]
+            values[name] = [assignment.value for assignment in reception.inputs]
         for reaction in graph.reactions:
-            values.setdefault(event_name(reaction.event), []).extend(given.value for given in reaction.assignments)
-        kept = [(event_name(owner.event), path, read) for owner, path, read in kept_reads(graph)]
+            values.setdefault(event_name(reaction.event), []).extend(
+                assignment.value for assignment in reaction.assignments
+            )
+        stored = [(event_name(owner.event), path, message_read) for owner, path, message_read in kept_reads(graph)]
         for name, several in values.items():
-            later = [(path, read) for owner, path, read in kept if owner == name]
+            later = [(path, message_read) for owner, path, message_read in stored if owner == name]
             self._reads[name] = (*all_reads(several), *later)
         clients: list[rosgraph.ServiceClient | rosgraph.ActionClient] = [*graph.serviceClients, *graph.actionClients]
         for client in clients:  # an error may be an answer that can't be read
@@ -191,8 +193,8 @@ class WireFit:
 
     def wire_type(self, event: str, path: tuple[str, ...]) -> WireType | None:
         """Return the type of a field in ROS 2 or else ROS 1; None if it is unknown."""
-        found = (known.reached(*self._sections[event], path) for known in self.types.distributions)
-        return next((reached[0] for reached in found if reached is not None), None)
+        reached_types = (known.type_at(*self._sections[event], path) for known in self.types.distributions)
+        return next((reached[0] for reached in reached_types if reached is not None), None)
 
     def fault(self, event: str, value: Any, *, is_message: bool = False) -> Fault | None:
         """Return a fault of the first part of an event's data that its ROS type or the model rejects, else None.
@@ -211,7 +213,9 @@ class WireFit:
                 continue
             expected = _expected(part)
             if expected is not None:
-                others = [literal.name for made in part.conversions for literal in made.enumeration.literals]
+                others = [
+                    literal.name for conversion in part.conversions for literal in conversion.enumeration.literals
+                ]
                 expected = ", ".join([*others, f"or {expected}"]) if others else expected
                 return Fault(f"{part.place} is {in_short(part.value)}, expected {expected}")
             if isinstance(part.value, list | dict) and not _has_fitting_numbers(part):
@@ -227,7 +231,7 @@ class WireFit:
         while pending:
             part = pending.pop()
             if part.is_literal:
-                if not any(part.value == literal(made, part.path) for made in part.conversions):
+                if not any(part.value == literal(conversion, part.path) for conversion in part.conversions):
                     return f"{part.place} is {in_short(part.value)}"
             elif isinstance(part.value, list | dict):
                 parts = list(part.parts)
@@ -243,9 +247,9 @@ class WireFit:
     def _whole(self, event: str, value: Any, *, literals: bool = True) -> _Part:
         """Return all data of an event; a lone value stands for the only field that is read, or that exists."""
         package, name, section = self._sections[event]
-        kinds = tuple(_Kind(Nested(package, name), section, known) for known in self.types.distributions)
+        kinds = tuple(_Kind(NestedType(package, name), section, known) for known in self.types.distributions)
         reads = self._reads.get(event, ())
-        part = replace(_opened(reads, literals), value=value, kinds=kinds)
+        part = replace(_open_part(reads, literals), value=value, kinds=kinds)
         if isinstance(value, dict) or part.is_literal:
             return part
         heads = {path[0] if path else "" for path, _ in part.reads}
@@ -272,27 +276,27 @@ def _expected(part: _Part) -> str | None:
     if kinds:
         expected = [_misfit(kind.type, part.value) for kind in kinds]
         return None if None in expected else expected[0]
-    for path, read in part.reads:
+    for path, message_read in part.reads:
         if path:
-            found = _misfit(Sequence(Nested("", "")) if _is_index(path[0]) else Nested("", ""), part.value)
-        elif isinstance(read.type, ex.IntegerType):
+            misfit = _misfit(Sequence(NestedType("", "")) if _is_index(path[0]) else NestedType("", ""), part.value)
+        elif isinstance(message_read.type, ex.IntegerType):
             several = [_misfit(Basic(name), part.value) for name in _INTEGERS]
-            found = None if None in several else several[0]
-        elif isinstance(read.type, ex.BooleanType | ex.DoubleType | ex.StringType):
-            found = _misfit(Basic(_WIDEST[type(read.type)]), part.value)
-        elif isinstance(read.type, rosgraph.ArrayType):
-            found = _misfit(Sequence(Nested("", "")), part.value)
+            misfit = None if None in several else several[0]
+        elif isinstance(message_read.type, ex.BooleanType | ex.DoubleType | ex.StringType):
+            misfit = _misfit(Basic(_WIDEST[type(message_read.type)]), part.value)
+        elif isinstance(message_read.type, rosgraph.ArrayType):
+            misfit = _misfit(Sequence(NestedType("", "")), part.value)
         else:
-            found = None
-        if found is not None:
-            return found
+            misfit = None
+        if misfit is not None:
+            return misfit
     return None
 
 
 def _misfit(wire: WireType, value: Any) -> str | None:
     """Return the expected data in place of a value; None if the value fits the type."""
     match wire:
-        case Nested():
+        case NestedType():
             return None if isinstance(value, dict) else "an object"
         case Sequence():
             return _misfit_of_array(wire, value)

@@ -15,7 +15,7 @@ import click
 
 from robosc import __version__
 from robosc.base.diagnostics.visible import visible, visible_lines
-from robosc.base.files.reading import noting
+from robosc.base.files.reading import record_inputs
 from robosc.base.files.resources import locate
 from robosc.tools.cli import interruption
 
@@ -92,11 +92,11 @@ def _visible_errors() -> Iterator[None]:
     try:
         yield
     except click.ClickException as error:
-        said = error.format_message()
-        if visible_lines(said) == said:
+        message = error.format_message()
+        if visible_lines(message) == message:
             raise
         kind = _InternalError if isinstance(error, _InternalError) else CallError
-        raise kind(visible_lines(said)) from error
+        raise kind(visible_lines(message)) from error
 
 
 class _Commands(click.Group):
@@ -142,19 +142,19 @@ class _Commands(click.Group):
                 # A missing character in the terminal's encoding, or an undecodable file name, must not cause an error.
                 stream.reconfigure(errors="backslashreplace")
         try:
-            with noting():
+            with record_inputs():
                 return super().invoke(ctx)
         except (click.ClickException, click.exceptions.Exit, click.Abort, BrokenPipeError):
             raise
         except KeyboardInterrupt:
             raise click.exceptions.Exit(INTERRUPTED) from None
         except Exception as error:
-            if interruption.happened():
+            if interruption.was_interrupted():
                 raise click.exceptions.Exit(INTERRUPTED) from None
-            raise _told(error, show=ctx.params["traceback"]) from error
+            raise _error_message(error, show=ctx.params["traceback"]) from error
 
 
-def _told(error: Exception, *, show: bool) -> click.ClickException:
+def _error_message(error: Exception, *, show: bool) -> click.ClickException:
     """Return the error message for an exception that no command handles. With `show`, also print its traceback."""
     if isinstance(error, OSError):
         named = bool(error.filename)
@@ -167,8 +167,8 @@ def _told(error: Exception, *, show: bool) -> click.ClickException:
     return _InternalError(f"internal error of robosc, please report it: {type(error).__name__}: {error}{hint}")
 
 
-def _cmake_dir(context: click.Context, _parameter: click.Parameter, asked: bool) -> None:
-    if asked:
+def _cmake_dir(context: click.Context, _parameter: click.Parameter, is_requested: bool) -> None:
+    if is_requested:
         put(str(locate("cmake")))
         context.exit()
 
@@ -235,4 +235,4 @@ def run() -> NoReturn:
     except OSError as error:
         status = WRONG_CALL
         say(f"Error: cannot write the output: {error.strerror}", err=True)
-    os._exit(INTERRUPTED if interruption.happened() else status)
+    os._exit(INTERRUPTED if interruption.was_interrupted() else status)

@@ -10,19 +10,19 @@ import click
 from robosc.base.diagnostics import ModelError
 from robosc.base.diagnostics.visible import visible
 from robosc.base.files import reading as files
-from robosc.base.files.reading import noting
+from robosc.base.files.reading import record_inputs
 from robosc.base.files.writing import write_file
 from robosc.base.ros_types import RosTypes
 from robosc.language.checks import check as rules_of
-from robosc.language.checks.fixing import safe_edits
+from robosc.language.checks.automatic_edits import safe_edits
 from robosc.language.libraries import search_folders
 from robosc.language.reading import read as read_text
 from robosc.language.text import Documents
 from robosc.tools.cli import CallError, interruption, say
+from robosc.tools.cli.file_watch import whenever_files_change
 from robosc.tools.cli.options import FILE, Paths, findings_format, paths
 from robosc.tools.cli.reading import read
 from robosc.tools.cli.report import Report
-from robosc.tools.cli.watching import whenever_files_change
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -77,7 +77,7 @@ def command(models: Sequence[str], form: str, fix: bool, watch: bool, paths: Pat
     )
 
 
-class _Checked(NamedTuple):
+class _CheckedModel(NamedTuple):
     """A model and all its findings."""
 
     reading: Reading
@@ -90,13 +90,13 @@ def _mend(model: str, paths: Paths) -> None:
         raise CallError(f"{model} is not a .rscd file: --fix edits only text")
     interfaces = RosTypes(paths.interfaces)
 
-    def checked(content: str) -> _Checked:
+    def checked(content: str) -> _CheckedModel:
         interruption.check()
-        with noting():  # files that this reads may be overwritten
+        with record_inputs():  # files that this reads may be overwritten
             reading = read_text(model, paths.libraries, interfaces, Documents({model: content}))
-        return _Checked(reading, [*reading.findings, *rules_of(reading.base, reading.findings, interfaces)])
+        return _CheckedModel(reading, [*reading.findings, *rules_of(reading.base, reading.findings, interfaces)])
 
-    with noting():
+    with record_inputs():
         written = files.read(model)
     try:
         content = before = written.decode("utf-8")
@@ -104,11 +104,11 @@ def _mend(model: str, paths: Paths) -> None:
         return  # writing the text would lose the bytes that cannot be decoded
     seen = {content}
     for _ in range(_ROUNDS):
-        found = checked(content)
-        edits = safe_edits(found, checked)
+        checked_model = checked(content)
+        edits = safe_edits(checked_model, checked)
         if not edits:
             break
-        after = found.reading.file.text.after(edits, content)
+        after = checked_model.reading.file.text.after(edits, content)
         if after in seen:
             break
         seen.add(after)
@@ -130,7 +130,7 @@ def _check(models: Sequence[str], form: str, paths: Paths) -> None:
                 except (click.ClickException, click.exceptions.Exit, OSError):
                     raise
                 except Exception as fault:
-                    if interruption.happened():
+                    if interruption.was_interrupted():
                         raise
                     faults.append(fault)
     finally:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from robosc.run.simulation.played import PlayError
+from robosc.run.simulation.sources import PlayError
 from robosc.tools.cli import CallError, say
 from robosc.tools.cli.options import Paths, synthesizer
 from robosc.tools.cli.parameters import set_parameters
@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 
     from robosc.base.diagnostics import Diagnostic
     from robosc.m2t.models import Models
-    from robosc.tools.debugger import Wanted
+    from robosc.tools.debugger import LaunchTarget
 
 
-class _Kept(Report):
+class _FindingList(Report):
     """Collects findings for the debugger's client, which shows them."""
 
     def _show(self) -> None:
@@ -64,16 +64,16 @@ def command(port: int | None, once: bool) -> None:
     )
 
 
-def _load(wanted: Wanted) -> tuple[Models, Sequence[Diagnostic], Mapping[str, str]]:
-    report = _Kept(aside=True)
-    given = [
-        f"{name}={value if isinstance(value, str) else json.dumps(value)}" for name, value in wanted.parameters.items()
+def _load(target: LaunchTarget) -> tuple[Models, Sequence[Diagnostic], Mapping[str, str]]:
+    report = _FindingList(aside=True)
+    parameters = [
+        f"{name}={value if isinstance(value, str) else json.dumps(value)}" for name, value in target.parameters.items()
     ]
     models: Models | None = None
     try:
         with report:
-            models = read_models(wanted.program, Paths(wanted.libraries, wanted.interfaces), report, cif=True)
-            set_parameters(models.rosgraph, given)
+            models = read_models(target.program, Paths(target.libraries, target.interfaces), report, cif=True)
+            set_parameters(models.rosgraph, parameters)
             supervise_models(models, report)
     except click.ClickException as error:
         raise PlayError(error.format_message(), report.findings, report.texts) from None

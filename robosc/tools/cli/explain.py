@@ -12,11 +12,11 @@ from robosc.analysis.explain import (
     Renderer,
     data_of,
     emptiness,
-    event_named,
     explain,
-    explored,
+    explore,
+    find_event,
+    parse_state,
     possibility,
-    state_given,
 )
 from robosc.analysis.supervise import supervise
 from robosc.base.diagnostics.visible import visible
@@ -84,7 +84,7 @@ def command(
         plants = read_models(model, paths, report, cif=True).sct
         supervise_otherwise(plants)
         with progress("exploring the states of the robot"):
-            answer = explored(plants, emptiness if why_empty else _question(plants, event, state, why_never))
+            answer = explore(plants, emptiness if why_empty else _question(plants, event, state, why_never))
         if answer is None and not why_empty:
             supervise(plants)  # raises with the cause
         elif as_data:
@@ -99,15 +99,15 @@ def _question(
 ) -> Callable[[SynthesizedSystem], Explanation | Possibility | None]:
     """Return the analysis that answers the question. Its result is None if the supervisor is empty."""
     try:
-        asked = event_named(model, event or why_never or "")
-        codes = {} if state is None else state_given(model, state)
+        event_in_question = find_event(model, event or why_never or "")
+        codes = {} if state is None else parse_state(model, state)
     except NamingError as error:
         raise CallError(str(error)) from error
 
     def answer(system: SynthesizedSystem) -> Explanation | Possibility | None:
         if not system.controlled.satisfiable():
             return None
-        return possibility(system, asked) if event is None else explain(system, asked, codes)
+        return possibility(system, event_in_question) if event is None else explain(system, event_in_question, codes)
 
     return answer
 

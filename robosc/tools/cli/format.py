@@ -10,7 +10,7 @@ import click
 
 from robosc.base.diagnostics.visible import visible
 from robosc.base.files import reading as files
-from robosc.base.files.finding import files_below
+from robosc.base.files.search import files_below
 from robosc.base.files.writing import write_file
 from robosc.language.formatting import format_text
 from robosc.language.text import decode

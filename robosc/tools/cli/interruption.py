@@ -24,7 +24,7 @@ def leave() -> None:
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
-def happened() -> bool:
+def was_interrupted() -> bool:
     """Return whether an interrupt was recorded."""
     return bool(_noted)
 

@@ -38,7 +38,7 @@ _NONE = "-"
 @click.option("--twist", is_flag=True, help="Send commands as velocities on /cmd_vel.")
 @click.option("-o", "--output", "folder", type=click.Path(), help="The new folder.  [default: the robot's name]")
 @click.option("-y", "--yes", is_flag=True, help="Do not prompt; use the defaults.")
-def command(name: str, folder: str | None, yes: bool, **given: Any) -> None:
+def command(name: str, folder: str | None, yes: bool, **options: Any) -> None:
     """Create a model of a robot: a folder with model, configuration, README.md and test.
 
     On a terminal, the command prompts for all choices that no option sets. The model passes `check`, `format --check`
@@ -53,8 +53,8 @@ def command(name: str, folder: str | None, yes: bool, **given: Any) -> None:
     Exit status: 0 success, 2 a wrong call, such as a folder that is not empty.
     """
     # Reject invalid names in the call before any prompt.
-    _choices(name, given)
-    choices = _choices(name, given if yes or not _on_terminal() else _asked(given))
+    _choices(name, options)
+    choices = _choices(name, options if yes or not _on_terminal() else _ask(options))
     target = Path(folder or choices.stem)
     if os.path.lexists(target) and (not target.is_dir() or any(target.iterdir())):
         raise CallError(f"{visible(str(target))} exists already and is not overwritten; choose another folder with -o")
@@ -67,10 +67,10 @@ def command(name: str, folder: str | None, yes: bool, **given: Any) -> None:
     say(f"next: cd {visible(str(target))}; robosc simulate {model}")
 
 
-def _choices(name: str, given: dict[str, Any]) -> Choices:
-    said = {key: value for key, value in given.items() if value}
-    said |= {key: None for key in ("stop", "service") if said.get(key) == _NONE}
-    choices = Choices(name, **{**said, "ros": int(said.get("ros", 2))})
+def _choices(name: str, options: dict[str, Any]) -> Choices:
+    chosen_options = {key: value for key, value in options.items() if value}
+    chosen_options |= {key: None for key in ("stop", "service") if chosen_options.get(key) == _NONE}
+    choices = Choices(name, **{**chosen_options, "ros": int(chosen_options.get("ros", 2))})
     fault = choices.fault()
     if fault is not None:
         raise CallError(fault)
@@ -81,9 +81,9 @@ def _on_terminal() -> bool:
     return sys.stdin.isatty() and sys.stdout.isatty()
 
 
-def _asked(given: dict[str, Any]) -> dict[str, Any]:
+def _ask(options: dict[str, Any]) -> dict[str, Any]:
     """Return the options of the call, with the user's answers for all missing choices."""
-    answers = dict(given)
+    answers = dict(options)
     if not answers["ros"]:
         answers["ros"] = click.prompt("ROS", type=click.Choice(["1", "2"]), default="2", err=True)
     for choice, question in _QUESTIONS.items():

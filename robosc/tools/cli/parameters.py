@@ -9,7 +9,7 @@ import click
 
 from robosc.base.files.json_reading import JsonError, json_value
 from robosc.language.configuration.parameters import model_parameters
-from robosc.language.explaining import did_you_mean
+from robosc.language.syntax_messages import did_you_mean
 from robosc.model.semantics.durations import set_milliseconds
 from robosc.model.semantics.evaluation import literal
 from robosc.run.runtime.core.settings import check
@@ -21,23 +21,33 @@ if TYPE_CHECKING:
     from robosc.model import rosgraph
 
 parameters = click.option(
-    "--param", "given", multiple=True, metavar="NAME=VALUE", help="Set a parameter of the model; repeatable."
+    "--param",
+    "parameter_texts",
+    multiple=True,
+    metavar="NAME=VALUE",
+    help="Set a parameter of the model; repeatable.",
 )
 
 
-def set_parameters(graph: rosgraph.RosGraph | None, given: Sequence[str]) -> None:
+def set_parameters(graph: rosgraph.RosGraph | None, texts: Sequence[str]) -> None:
     """Set parameters of a graph to values from the call. Raises CallError for an invalid one."""
-    known = {} if graph is None else {found.name: (place, found) for place, found in model_parameters(graph).items()}
-    for text in given:
+    known = (
+        {}
+        if graph is None
+        else {parameter.name: (place, parameter) for place, parameter in model_parameters(graph).items()}
+    )
+    for text in texts:
         name, _, value = text.partition("=")
         if name not in known:
             repair = did_you_mean(name, known, cutoff=0.6)
-            found = f"the model has no parameter {name}"
-            raise CallError(f"--param {text}: {found}; {repair.hint}" if repair else f"--param {text}: {found}")
+            known_parameter = f"the model has no parameter {name}"
+            raise CallError(
+                f"--param {text}: {known_parameter}; {repair.hint}" if repair else f"--param {text}: {known_parameter}"
+            )
         place, parameter = known[name]
         try:
-            read = value if isinstance(parameter.default, str) else json_value(value)
-            fitting = check(parameter, read)
+            parsed = value if isinstance(parameter.default, str) else json_value(value)
+            fitting = check(parameter, parsed)
             place.initial = literal(fitting)
             for duration in place.durations:
                 duration.milliseconds = set_milliseconds(float(fitting), duration.unit)

@@ -62,7 +62,7 @@ def progress(what: str | Callable[[], str]) -> Iterator[None]:
 
 
 @contextmanager
-def synthesizing(model: sct.SupervisoryControlModel) -> Iterator[Statistics]:
+def show_progress(model: sct.SupervisoryControlModel) -> Iterator[Statistics]:
     """Show the progress of a model's synthesis in the `with` block, which fills these statistics.
 
     An interrupt ends it within a moment. Raises MemoryError with a hint if memory is exhausted.
@@ -77,7 +77,7 @@ def synthesizing(model: sct.SupervisoryControlModel) -> Iterator[Statistics]:
         raise
     except MemoryError as error:
         types = [variable.type for plant in model.plants for variable in plant.variables]
-        types += [given.type for plant in model.plants for given in plant.inputs]
+        types += [input_element.type for plant in model.plants for input_element in plant.inputs]
         has_integers = any(isinstance(kind, ex.IntegerType) for kind in types)
         smaller = "give integers smaller ranges" if has_integers else "use fewer states in the model"
         helps = f"raise `--memory` of `synthesize` or `transform`, or {smaller}"
@@ -85,14 +85,14 @@ def synthesizing(model: sct.SupervisoryControlModel) -> Iterator[Statistics]:
 
 
 def _how_far(statistics: Statistics) -> str:
-    said = "synthesizing the supervisor"
+    activity = "synthesizing the supervisor"
     if statistics.phase is None:
-        return said
+        return activity
     parts = [statistics.phase.value]
     if statistics.rounds:
         parts.append(f"round {statistics.rounds} on {_number(statistics.states)} states")
     parts += [f"{statistics.operations:,} operations", f"{statistics.peak_nodes:,} nodes"]
-    return f"{said}: {', '.join(parts)}"
+    return f"{activity}: {', '.join(parts)}"
 
 
 def _number(number: int) -> str:

@@ -35,10 +35,10 @@ def read(path: str, paths: Paths, report: Report) -> Root | None:
     def locate(name: str) -> str | None:
         # The author of a saved model chose the names of its source texts. They are searched only in a few folders.
         folders = [Path(path).parent, *search_folders(paths.libraries)]
-        found = next((text for folder in folders if (text := _text_below(folder, name))), None)
-        if found is not None:
-            report.may_quote(found)
-        return found
+        file_text = next((text for folder in folders if (text := _text_below(folder, name))), None)
+        if file_text is not None:
+            report.may_quote(file_text)
+        return file_text
 
     if path.endswith(".xmi"):
         from robosc.model import validity
@@ -128,10 +128,10 @@ def supervise_models(models: Models, report: Report, *, memory: int | None = Non
     """
     from robosc.analysis.supervise import supervise
     from robosc.synthesis import MEMORY
-    from robosc.tools.cli.progress import synthesizing
+    from robosc.tools.cli.progress import show_progress
 
     if supervise_otherwise(models.sct, memory=memory) is None and models.sct.supervisor is None:
-        with synthesizing(models.sct) as statistics:
+        with show_progress(models.sct) as statistics:
             supervision = supervise(models.sct, memory=memory or MEMORY, statistics=statistics)
         report.add(supervision.findings)
         report.stop_on_errors()

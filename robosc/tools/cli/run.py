@@ -36,7 +36,7 @@ def command(
     layer: bool,
     chosen: str | None,
     form: str,
-    given: Sequence[str],
+    parameter_texts: Sequence[str],
     paths: Paths,
     arguments: Sequence[str],
     live: bool,  # noqa: ARG001  # there is no other ROS
@@ -61,7 +61,7 @@ def command(
         models = read_models(model, paths, report)
         if models.rosgraph is None:
             raise CallError(f"{model} has no ROS graph: use its .rosgraph.xmi or .rscd")
-        set_parameters(models.rosgraph, given)
+        set_parameters(models.rosgraph, parameter_texts)
         settings = read_configuration(model, chosen, report)
         supervise_models(models, report)
         target = TARGETS["ros2-layer" if layer else "ros2"]
@@ -71,7 +71,7 @@ def command(
 
 
 def _run(models: Models, configuration: Configuration, arguments: Sequence[str], *, layer: bool) -> None:
-    from robosc.model.semantics.messages import message_named
+    from robosc.model.semantics.messages import find_message
     from robosc.run.runtime.core.node import StartError
     from robosc.run.runtime.core.settings import SafeMessages
     from robosc.run.runtime.node import run_controller, run_layer
@@ -81,7 +81,7 @@ def _run(models: Models, configuration: Configuration, arguments: Sequence[str],
     settings = (configuration.on_shutdown, configuration.on_withheld, configuration.on_blocked)
     safe = SafeMessages(
         *(
-            [sending for name in names for sending in [message_named(graph, name)] if sending is not None]
+            [sending for name in names for sending in [find_message(graph, name)] if sending is not None]
             for names in settings
         )
     )

@@ -63,16 +63,16 @@ def command(
             verdicts = verify(models, settings)
         with progress("generating"):
             texts = {_relative(model, name): files.read(name) for name in files.inputs()}
-            found = page.report(
+            contents = page.report(
                 models, settings, verdicts, texts=texts, version=__version__, interface_paths=paths.interfaces
             )
     interruption.check()
     if needs:
-        write_file(needs, page.as_needs(found))
+        write_file(needs, page.as_needs(contents))
     if as_object:
-        put(page.as_json(found), nl=False)
+        put(page.as_json(contents), nl=False)
     else:
-        write_file(file, page.as_html(found))
+        write_file(file, page.as_html(contents))
     if any(verdict.outcome is Outcome.REFUTED for verdict in verdicts):
         raise click.exceptions.Exit(ERRORS_FOUND)
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from robosc.analysis.wording import with_words
+from robosc.analysis.wording import describe_event
 from robosc.base.files import reading as files
 from robosc.engine import Settings
 from robosc.language.text import decode
@@ -54,7 +54,7 @@ def command(
     number: int | None,
     seed: int,
     chosen: str | None,
-    given: Sequence[str],
+    parameter_texts: Sequence[str],
     paths: Paths,
 ) -> None:
     """Simulate a supervised robot: step by step by hand, by a script, or at random.
@@ -79,7 +79,7 @@ def command(
         raise click.UsageError("--loop needs a --script")
     with Report(aside=True) as report:
         models = read_models(model, paths, report, cif=not loop)
-        set_parameters(models.rosgraph, given)
+        set_parameters(models.rosgraph, parameter_texts)
         settings = _settings(model, chosen, report) if loop else None
         supervise_models(models, report)
         if script is not None:
@@ -131,7 +131,7 @@ def _run(simulation: Simulation, number: int, seed: int) -> None:
 
 
 def _converse(simulation: Simulation, seed: int) -> None:
-    named = {event_name(event): with_words(event) for event in simulation.engine.roles.events}
+    named = {event_name(event): describe_event(event) for event in simulation.engine.roles.events}
     session = Session(simulation, seed, named)
     interactive = sys.stdin.isatty()
     if hasattr(sys.stdin, "reconfigure"):

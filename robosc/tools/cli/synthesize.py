@@ -9,17 +9,17 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from robosc.analysis.supervise import Diagnosis, EmptySupervisorError, supervise
-from robosc.analysis.system import counted, grouped
-from robosc.analysis.wording import called, change
+from robosc.analysis.system import format_count, format_number
+from robosc.analysis.wording import change, quote_requirements
 from robosc.model import sct
 from robosc.model.places import place
 from robosc.model.semantics.printing import RobotPrinter, SctPrinter, conjunction
 from robosc.model.semantics.roles import SILENT, event_name, input_values
-from robosc.model.semantics.walks import copied
+from robosc.model.semantics.walks import copy_tree
 from robosc.synthesis import count
 from robosc.tools.cli import EMPTY_SUPERVISOR, put, say
 from robosc.tools.cli.options import Paths, chosen_synthesizer, memory, model, paths, synthesizer
-from robosc.tools.cli.progress import synthesizing
+from robosc.tools.cli.progress import show_progress
 from robosc.tools.cli.reading import read_models, supervise_otherwise
 from robosc.tools.cli.report import Report
 
@@ -72,13 +72,13 @@ def command(model: str, as_json: bool, counts: bool, count_inputs: bool, megabyt
         if counts:
             _count(plants, megabytes << 20, times, as_json=as_json)
             return
-        found = supervise_otherwise(plants, memory=megabytes << 20)
-        if found is not None:
+        synthesis = supervise_otherwise(plants, memory=megabytes << 20)
+        if synthesis is not None:
             show = _show_json if as_json else _show
-            show(plants, Diagnosis(**vars(found)), times)
+            show(plants, Diagnosis(**vars(synthesis)), times)
             return
         try:
-            with synthesizing(plants) as statistics:
+            with show_progress(plants) as statistics:
                 supervision = supervise(
                     plants, memory=megabytes << 20, statistics=statistics, weigh=True, effort=_EFFORT
                 )
@@ -92,7 +92,7 @@ def command(model: str, as_json: bool, counts: bool, count_inputs: bool, megabyt
 
 
 def _count(model: sct.SupervisoryControlModel, memory: int, times: int, *, as_json: bool) -> None:
-    with synthesizing(model) as statistics:
+    with show_progress(model) as statistics:
         counted = count(model, memory=memory, statistics=statistics)
     if as_json:
         put(json.dumps(_counts(model, counted, statistics, times), indent=2))
@@ -172,7 +172,7 @@ def _event(event: sct.Event, guard: sct.EventGuard | None, synthesis: Synthesis)
     """Return an event with its guard. Without a guard, `ever_enabled` depends on the reachable states of the plants."""
     shown = RobotPrinter() if event.kind in (sct.EventKind.plain, sct.EventKind.input) else SctPrinter()
     parts = [part for part in (guard.requirement, guard.synthesis) if part] if guard else []
-    whole = conjunction(map(copied, parts))
+    whole = conjunction(map(copy_tree, parts))
     unwritten = synthesis.unwritten.get(event)
     return {
         "name": event_name(event),
@@ -187,8 +187,8 @@ def _event(event: sct.Event, guard: sct.EventGuard | None, synthesis: Synthesis)
 def _states(model: sct.SupervisoryControlModel, counts: Counts | Synthesis, times: int) -> str:
     """Return the number of states, each counted `times` times."""
     without = counts.uncontrolled_states
-    beside = "" if without is None else f", of {grouped(without * times)} without requirements"
-    return f"{model.name}: {counted(counts.controlled_states * times, 'state')}{beside}"
+    beside = "" if without is None else f", of {format_number(without * times)} without requirements"
+    return f"{model.name}: {format_count(counts.controlled_states * times, 'state')}{beside}"
 
 
 def _show(model: sct.SupervisoryControlModel, synthesis: Diagnosis, times: int) -> None:
@@ -208,8 +208,8 @@ def _show(model: sct.SupervisoryControlModel, synthesis: Diagnosis, times: int) 
         if event["added_by_synthesis"]:
             say(f"    added by synthesis: {event['added_by_synthesis']}")
     for weight in synthesis.weights:
-        say(f"\n{called(weight.requirements)}")
-        count = counted(weight.states, "state")
+        say(f"\n{quote_requirements(weight.requirements)}")
+        count = format_count(weight.states, "state")
         invariant = isinstance(weight.requirements[0], sct.StateInvariant)
         matters = f"forbids {count}" if invariant else f"restricts the robot in {count}"
         say(f"    {matters if weight.states else 'matters in no state'}")

@@ -23,7 +23,7 @@ from robosc.m2t.models import Models, TraceTest
 from robosc.m2t.targets import TARGETS
 from robosc.run.node_tests.trace_test import player_files
 from robosc.run.scenario_tests import RULE, LiveError, LiveNode, Player, read_scenarios, unfit_data, unknown_events
-from robosc.run.scenario_tests.conditions import extended
+from robosc.run.scenario_tests.conditions import add_conditions
 from robosc.run.scenario_tests.operations import Operations
 from robosc.tools.cli import CallError, say
 from robosc.tools.cli.options import (
@@ -128,12 +128,12 @@ def command(
             runs = []
             for number, scenario in enumerate(played, 1):
                 operations = Operations()
-                found = player.play(scenario, operations)
-                if started is not None and not found:
-                    found = _followed(started, scenario, player)
+                deviations = player.play(scenario, operations)
+                if started is not None and not deviations:
+                    deviations = _followed(started, scenario, player)
                 runs.append(operations)
-                failed += bool(found)
-                report.add(found)
+                failed += bool(deviations)
+                report.add(deviations)
                 logs[f"scenario_{number}.jsonl"] = "".join(f"{line}\n" for line in player.trace)
             if engine == "c":
                 report.add(_compared(models, settings, runs))
@@ -151,15 +151,15 @@ def _read(
     conditions: list[Holds] = []
     for name in names:
         text, faults = decode(name, files.read(name))
-        found, expected, findings = read_scenarios(name, text.content)
+        more_scenarios, expected, findings = read_scenarios(name, text.content)
         report.add([*(replace(fault, rule=RULE) for fault in faults), *findings], {name: text.content})
-        scenarios += found
+        scenarios += more_scenarios
         conditions += expected
     report.add(unknown_events(plain.sct, scenarios))
-    return (*_meant(path, plain, conditions, paths, report), scenarios)
+    return (*_resolve_conditions(path, plain, conditions, paths, report), scenarios)
 
 
-def _meant(
+def _resolve_conditions(
     path: str, plain: Models, conditions: Sequence[Holds], paths: Paths, report: Report
 ) -> tuple[Models, Mapping[Holds, ex.Expression]]:
     """Return models with which the conditions can be evaluated, and their expressions in these models."""
@@ -168,11 +168,11 @@ def _meant(
     text, _ = decode(path, files.read(path))
     assert plain.robosc is not None
     span = plain.robosc.source.span  # type: ignore[union-attr]  # a model from a text has a place
-    longer = extended(text.content, text.offset(span.end_line, span.end_column), conditions)
+    longer = add_conditions(text.content, text.offset(span.end_line, span.end_column), conditions)
     types = RosTypes(paths.interfaces)
     reading = read_text(path, paths.libraries, types, Documents({path: longer.text}))
     findings = [*reading.findings, *(check(reading.base, reading.findings, types) if reading.base else ())]
-    report.add(longer.told(finding) for finding in findings if finding.severity is Severity.ERROR)
+    report.add(longer.move_to_scenario(finding) for finding in findings if finding.severity is Severity.ERROR)
     report.stop_on_errors()
     robot: rsc.Robot = reading.base  # type: ignore[assignment]  # equal except for the properties
     model = robosc.to_sct(robot)
@@ -191,13 +191,13 @@ def _live(models: Models, settings: Configuration, player: Player, node: str | N
 
 def _command() -> list[str]:
     """Return the command that runs the model as a node, with the search folders and configuration of this call."""
-    given = click.get_current_context().params
-    options = [word for folder in given["library_paths"] for word in ("-I", folder)]
-    options += [word for folder in given["interface_paths"] for word in ("--interface-path", folder)]
-    options += ["--config", given["chosen"]] if given["chosen"] else []
+    params = click.get_current_context().params
+    options = [word for folder in params["library_paths"] for word in ("-I", folder)]
+    options += [word for folder in params["interface_paths"] for word in ("--interface-path", folder)]
+    options += ["--config", params["chosen"]] if params["chosen"] else []
     synthesizer = chosen_synthesizer()
     options += ["--synthesizer", synthesizer.name] if synthesizer else []
-    return [sys.executable, "-m", "robosc", "run", given["model"], "--ros2", *options]
+    return [sys.executable, "-m", "robosc", "run", params["model"], "--ros2", *options]
 
 
 def _followed(live: LiveNode, scenario: Scenario, player: Player) -> list[Diagnostic]:
@@ -217,5 +217,5 @@ def _compared(models: Models, settings: Configuration, runs: Sequence[Operations
     generated = robosc.generate("supervisor", models, settings)
     with temporary_folder() as folder:
         program = CProgram(models.sct, folder, compiler, generated)
-        differences = [run.compared(program) for run in runs]
+        differences = [run.compare(program) for run in runs]
     return [difference for difference in differences if difference is not None]

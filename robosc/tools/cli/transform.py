@@ -13,7 +13,7 @@ from robosc.base.files.reading import inputs
 from robosc.base.files.writing import write
 from robosc.language.configuration import LOCATIONS
 from robosc.m2t.targets import TARGETS, Target, targets, together
-from robosc.synthesis.memory import bounded
+from robosc.synthesis.memory import limit_memory
 from robosc.tools.cli import CallError, interruption, put, say
 from robosc.tools.cli.options import Paths, configuration, findings_format, memory, model, paths, synthesizer
 from robosc.tools.cli.progress import progress
@@ -52,11 +52,11 @@ class _Command(click.Command):
     """Lists the targets in its help, with those of installed packages. Explains how to name several of them."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        given = list(args)
+        words = list(args)
         try:
             return super().parse_args(ctx, args)
         except click.UsageError as error:
-            names = [name for name in (word.removeprefix("--to=") for word in given) if name in targets()]
+            names = [name for name in (word.removeprefix("--to=") for word in words) if name in targets()]
             if len(names) > 1 and "extra argument" in error.message:
                 raise click.UsageError(f"{error.message}: write `--to {','.join(names)}`", ctx) from error
             raise
@@ -155,7 +155,7 @@ def command(
         models = replace(models, folder=folder)
         tests: dict[Target, TraceTest | None] = {}
         files = {}
-        with together(), bounded(megabytes << 20, "generating"):
+        with together(), limit_memory(megabytes << 20, "generating"):
             for target in targets:
                 with progress(f"generating {target.name}"):
                     tests[target] = _tests(target, models, settings, paths) if with_tests else None
@@ -163,8 +163,8 @@ def command(
         if into is None:
             trees = _trees(folder, files, copies, models, settings)
         else:
-            (made,) = files.values()
-            trees = {folder: {**made, "inputs.txt": "".join(f"{name}\n" for name in _inputs())}}
+            (generated,) = files.values()
+            trees = {folder: {**generated, "inputs.txt": "".join(f"{name}\n" for name in _inputs())}}
         interruption.check()
         with progress(f"writing to {folder}"):  # may wait for another run
             changed = set(write(trees))

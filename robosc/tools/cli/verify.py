@@ -96,7 +96,7 @@ def _show(model: sct.SupervisoryControlModel, verdicts: Sequence[Verdict]) -> No
         table.add_row(Text(verdict.property), outcome, Text(visible(verdict.evidence)), f"{verdict.seconds:.3f}")
     console.print(table)
     for verdict in verdicts:
-        said = details(verdict, model)
-        if said:
-            say(f"\n{said}")
+        text = details(verdict, model)
+        if text:
+            say(f"\n{text}")
     say(f"\n{TRUSTED}\n\n{model.name}: {summary(verdicts)}")

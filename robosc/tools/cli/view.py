@@ -12,7 +12,7 @@ import click
 from robosc.base.files.writing import write
 from robosc.base.recordings import RecordingError, is_recording
 from robosc.run.simulation import Simulation
-from robosc.run.simulation.played import PlayError, counterexample_steps, recorded_moments, script_steps
+from robosc.run.simulation.sources import PlayError, counterexample_steps, recorded_moments, script_steps
 from robosc.tools.cli import CallError, put, say
 from robosc.tools.cli.options import FILE, Paths, over_ros, paths, synthesizer
 from robosc.tools.cli.parameters import parameters, set_parameters
@@ -64,7 +64,7 @@ def command(
     opens: bool,
     port: int,
     address: str,
-    given: Sequence[str],
+    parameter_texts: Sequence[str],
     paths: Paths,
 ) -> None:
     """Show the decisions of a supervised robot in a browser: states, commands, and why they are forbidden.
@@ -101,7 +101,7 @@ def command(
     for model in models:
         with Report(aside=True) as report:
             robot = read_models(model, paths, report, cif=True)
-            set_parameters(robot.rosgraph, given)
+            set_parameters(robot.rosgraph, parameter_texts)
             settings = read_configuration(model, None, report)
             supervise_models(robot, report)
             simulation = Simulation(robot.sct, robot.rosgraph, robot.ros_types)
@@ -138,7 +138,7 @@ def _listening(heard: Sequence[tuple[Sequence[str], Live]]) -> Callable[[], Call
 
     def begin() -> Callable[[], None]:
         from robosc.run.runtime.core.node import StartError
-        from robosc.run.runtime.listening import listen
+        from robosc.run.runtime.subscriptions import listen
         from robosc.tools.view.relay import Relay
 
         try:
@@ -167,8 +167,8 @@ def _record(
         if log is not None:
             return view.Record(simulation, graph, script_steps(simulation, log), seed)
         if refuted is not None:
-            steps, said = counterexample_steps(simulation, None if refuted == "any" else refuted)
-            say(said, err=True, nl=False)
+            steps, message = counterexample_steps(simulation, None if refuted == "any" else refuted)
+            say(message, err=True, nl=False)
             return view.Record(simulation, graph, steps, seed)
     except RecordingError as error:
         raise CallError(str(error)) from None
@@ -188,19 +188,19 @@ def _serve(
     opens: bool,
     begin: Callable[[], Callable[[], None]] | None,
 ) -> None:
-    from robosc.tools.view import serving
+    from robosc.tools.view import http_server
     from robosc.tools.view.server import application
 
     try:
-        listening = serving.listen(address, port)
+        listening = http_server.listen(address, port)
     except OSError as error:
         raise CallError(f"{address}:{port}: {error.strerror}") from None
     number = listening.getsockname()[1]
     host = f"[{address}]" if ":" in address else address
-    is_loopback = host in serving.LOOPBACK
+    is_loopback = host in http_server.LOOPBACK
     token = None if is_loopback else secrets.token_urlsafe(16)
-    hosts = {f"{name}:{number}" for name in (*serving.LOOPBACK, host)}
-    seen = serving.reachable(address)
+    hosts = {f"{name}:{number}" for name in (*http_server.LOOPBACK, host)}
+    seen = http_server.reachable(address)
     path = f"http://{f'[{seen}]' if ':' in seen else seen}:{number}/{'' if token is None else f'?token={token}'}"
     ends: list[Callable[[], None]] = []
 
@@ -212,7 +212,7 @@ def _serve(
             webbrowser.open(path)
 
     try:
-        serving.serve(application(shown, hosts, token), listening, ready)
+        http_server.serve(application(shown, hosts, token), listening, ready)
     finally:
         for end in ends:
             end()

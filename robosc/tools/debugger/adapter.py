@@ -7,19 +7,19 @@ import sys
 import traceback
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from robosc.analysis.explain import NamingError, Renderer, event_named
+from robosc.analysis.explain import NamingError, Renderer, find_event
 from robosc.base.diagnostics import as_text
 from robosc.base.files.json_reading import JsonError, json_value
 from robosc.model.semantics.failures import possible_reasons
 from robosc.model.semantics.roles import event_name
 from robosc.model.semantics.steps import FIRST_WORDS, StepError
 from robosc.run.simulation import DataError, Simulation, read_script
-from robosc.run.simulation.played import PlayError
 from robosc.run.simulation.replay import Replay
 from robosc.run.simulation.script import WAIT, spoken
-from robosc.tools.debugger.launching import Launch, RequestError
+from robosc.run.simulation.sources import PlayError
+from robosc.tools.debugger.launch import Launch, RequestError
 from robosc.tools.debugger.stops import FILTERS, Stop, Stops
-from robosc.tools.debugger.views import Views, at, shown
+from robosc.tools.debugger.views import Views, at, format_value
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from robosc.model import sct
     from robosc.run.simulation.replay import Moment
-    from robosc.tools.debugger.launching import Loader
+    from robosc.tools.debugger.launch import Loader
     from robosc.tools.debugger.protocol import Connection
     from robosc.tools.debugger.views import Variable
 
@@ -115,7 +115,7 @@ class Adapter:
             body, after = await self._answer(command, {} if arguments is None else arguments)
             self._connection.send("response", **answer, success=True, **({} if body is None else {"body": body}))
         except (RequestError, PlayError, NamingError, DataError, OSError, MemoryError) as error:
-            self._refuse(answer, _said(error))
+            self._refuse(answer, _error_text(error))
             if isinstance(error, PlayError) and error.findings:
                 self._output(as_text.render(error.findings, error.texts), "stderr")
             if command == "launch":
@@ -135,8 +135,8 @@ class Adapter:
 
     def _refuse(self, answer: Mapping[str, Any], why: str) -> None:
         # The format would read braces as names of variables.
-        told = {"id": 1, "format": why.replace("{", "(").replace("}", ")"), "showUser": True}
-        self._connection.send("response", **answer, success=False, message=why, body={"error": told})
+        error = {"id": 1, "format": why.replace("{", "(").replace("}", ")"), "showUser": True}
+        self._connection.send("response", **answer, success=False, message=why, body={"error": error})
 
     def _event(self, name: str, body: Mapping[str, Any] | None = None) -> None:
         self._connection.send("event", event=name, **({} if body is None else {"body": body}))
@@ -184,11 +184,11 @@ class Adapter:
 
     def _launched(self, arguments: Mapping[str, Any]) -> _Run:
         launch = Launch.of(arguments)
-        models, findings, texts = self._load(launch.wanted)
+        models, findings, texts = self._load(launch.target)
         self._output(as_text.render(findings, texts), "stderr")
         simulation = Simulation(models.sct, models.rosgraph, models.ros_types)
-        steps, told = launch.steps(simulation)
-        self._output(told)
+        steps, message = launch.steps(simulation)
+        self._output(message)
         replay = Replay(simulation, steps, launch.seed)
         self._event("process", {"name": models.sct.name, "isLocalProcess": True, "startMethod": "launch"})
         return _Run(replay, launch)
@@ -225,10 +225,10 @@ class Adapter:
         if moment is None:
             self._over(run)
             return
-        self._output(self._told(moment))
+        self._output(self._describe(moment))
         run.stops.look()
         hit = run.stops.hit(moment)
-        self._stopped(hit or Stop("step", run.views.told(moment)))
+        self._stopped(hit or Stop("step", run.views.describe(moment)))
 
     def _over(self, run: _Run) -> None:
         """Stop or terminate, because no step is left to play."""
@@ -268,7 +268,7 @@ class Adapter:
         moment = run.replay.back()
         if moment is None:
             return None, lambda: self._stopped(Stop("entry", "this is the start of the robot"))
-        self._output(f"taken back: {run.views.told(moment)}\n")
+        self._output(f"taken back: {run.views.describe(moment)}\n")
         run.stops.look()
         return None, lambda: self._stopped(Stop("step", "one step back"))
 
@@ -303,25 +303,25 @@ class Adapter:
             self._stopped(Stop("exception", f"internal error of robosc, please report it: {fault}"))
 
     async def _played(self, run: _Run, step: Callable[[_Run, int], tuple[str, Stop | None, bool]]) -> None:
-        told: list[str] = []
+        outputs: list[str] = []
         number = 0
         while True:
-            said, stop, over = step(run, number)
-            told.append(said)
+            output, stop, over = step(run, number)
+            outputs.append(output)
             number += 1
             if self._pausing and stop is None and not over:
                 stop = Stop("pause", "paused")
             if stop is not None or over:
                 self._running = None
-                self._output("".join(told))
+                self._output("".join(outputs))
                 if stop is not None:
                     self._stopped(stop)
                 else:
                     self._over(run)
                 return
             if number % _AT_ONCE == 0:
-                self._output("".join(told))
-                told.clear()
+                self._output("".join(outputs))
+                outputs.clear()
                 await asyncio.sleep(0)
 
     def _onwards(self, run: _Run, number: int) -> tuple[str, Stop | None, bool]:
@@ -337,7 +337,7 @@ class Adapter:
         stop = run.stops.hit(moment)
         if stop is None and run.replay.is_over:
             stop = Stop("pause", "the script is at its end")
-        return self._told(moment), stop, False
+        return self._describe(moment), stop, False
 
     def _back(self, run: _Run, _: int) -> tuple[str, Stop | None, bool]:
         moment = run.replay.back()
@@ -353,14 +353,16 @@ class Adapter:
             run.replay.forward()
             run.stops.look()
             stop = run.stops.hit(last)
-        return f"taken back: {run.views.told(moment)}\n", stop, False
+        return f"taken back: {run.views.describe(moment)}\n", stop, False
 
-    def _told(self, moment: Moment) -> str:
+    def _describe(self, moment: Moment) -> str:
         run = self._debugged
         changed = [
-            f"    {name} = {shown(value)}\n" for name, value in moment.after.items() if moment.before[name] != value
+            f"    {name} = {format_value(value)}\n"
+            for name, value in moment.after.items()
+            if moment.before[name] != value
         ]
-        return "".join([f"{run.views.told(moment)}\n", *changed])
+        return "".join([f"{run.views.describe(moment)}\n", *changed])
 
     def _stopped(self, stop: Stop) -> None:
         self._stop = stop
@@ -378,8 +380,8 @@ class Adapter:
 
     def _set_breakpoints(self, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
         lines = [self._line(point) for point in _objects(arguments.get("breakpoints"))]
-        told = self._debugged.stops.in_file(_path(arguments), lines)
-        return {"breakpoints": [point | {"line": self._shown_line(point["line"])} for point in told]}
+        points = self._debugged.stops.in_file(_path(arguments), lines)
+        return {"breakpoints": [point | {"line": self._shown_line(point["line"])} for point in points]}
 
     def _set_function_breakpoints(self, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
         names = [str(point.get("name", "")) for point in _objects(arguments.get("breakpoints"))]
@@ -391,13 +393,13 @@ class Adapter:
         return {"breakpoints": self._debugged.stops.filters([*filters, *_objects(arguments.get("filterOptions"))])}
 
     def _data_breakpoint_info(self, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
-        asked = str(arguments.get("name", ""))
+        requested = str(arguments.get("name", ""))
         if arguments.get("variablesReference"):
             children = self._children(arguments["variablesReference"])
-            asked = next((child.path for child in children if child.name == asked and child.path), asked)
-        name = self._debugged.views.state_name(asked)
+            requested = next((child.path for child in children if child.name == requested and child.path), requested)
+        name = self._debugged.views.state_name(requested)
         if name is None:
-            return {"dataId": None, "description": f"{asked} is not part of the state that changes"}
+            return {"dataId": None, "description": f"{requested} is not part of the state that changes"}
         return {"dataId": name, "description": name, "accessTypes": ["write"], "canPersist": True}
 
     def _set_data_breakpoints(self, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -418,7 +420,7 @@ class Adapter:
 
     def _stack_trace(self, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
         frames = self._debugged.views.frames()
-        told = []
+        shown_frames = []
         for number, frame in enumerate(frames):
             shown_frame: dict[str, Any] = {"id": number + 1, "name": frame.name, "line": 0, "column": 0}
             if frame.file is not None:
@@ -430,9 +432,9 @@ class Adapter:
                 if frame.end_line is not None and frame.end_column is not None:
                     shown_frame["endLine"] = self._shown_line(frame.end_line)
                     shown_frame["endColumn"] = frame.end_column - 1 + self._first_column
-            told.append(shown_frame)
+            shown_frames.append(shown_frame)
         first, count = (_natural(arguments.get(name)) for name in ("startFrame", "levels"))
-        return {"stackFrames": told[first : first + count if count else None], "totalFrames": len(told)}
+        return {"stackFrames": shown_frames[first : first + count if count else None], "totalFrames": len(shown_frames)}
 
     def _scopes(self, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
         views = self._debugged.views
@@ -454,14 +456,14 @@ class Adapter:
         }
 
     def _variable(self, variable: Variable) -> dict[str, Any]:
-        told: dict[str, Any] = {
+        body: dict[str, Any] = {
             "name": variable.name,
             "value": variable.value,
             "variablesReference": self._reference(variable.children),
         }
         if variable.path is not None:
-            told["evaluateName"] = variable.path
-        return told
+            body["evaluateName"] = variable.path
+        return body
 
     def _reference(self, children: Callable[[], Sequence[Variable]] | None) -> int:
         if children is None:
@@ -493,9 +495,9 @@ class Adapter:
         if text in ("", "help", "?"):
             return {"result": _HELP, "variablesReference": 0}, None
         if word == "why":
-            told = run.views.explained(event_name(event_named(run.replay.engine.model, rest.strip())))
-            said = Renderer(run.replay.engine.model, at).answer(told)
-            return {"result": said, "variablesReference": 0}, None
+            explanation = run.views.explain(event_name(find_event(run.replay.engine.model, rest.strip())))
+            answer_text = Renderer(run.replay.engine.model, at).answer(explanation)
+            return {"result": answer_text, "variablesReference": 0}, None
         if word == WAIT:
             return self._waited(run, text)
         value = run.views.value(text)
@@ -503,21 +505,23 @@ class Adapter:
             return {"result": value, "variablesReference": 0}, None
         moment = run.replay.inject(*_event(run.replay.engine.model, text))
         if moment.by is not None:
-            raise RequestError(run.views.told(moment))
-        return {"result": self._told(moment).rstrip(), "variablesReference": 0}, lambda: self._injected(run, [moment])
+            raise RequestError(run.views.describe(moment))
+        return {"result": self._describe(moment).rstrip(), "variablesReference": 0}, lambda: self._injected(
+            run, [moment]
+        )
 
     def _waited(self, run: _Run, text: str) -> tuple[Mapping[str, Any], Callable[[], None]]:
         steps, findings = read_script("", text, [WAIT])
         if findings:
             raise RequestError(f"{findings[0].message}; {findings[0].hint}")
         moments = run.replay.let_go_by(steps[0].data["seconds"])
-        said = "".join(map(self._told, moments)).rstrip()
-        return {"result": said, "variablesReference": 0}, lambda: self._injected(run, moments)
+        output = "".join(map(self._describe, moments)).rstrip()
+        return {"result": output, "variablesReference": 0}, lambda: self._injected(run, moments)
 
     @staticmethod
     def _is_event(run: _Run, text: str) -> bool:
         try:
-            event_named(run.replay.engine.model, text)
+            find_event(run.replay.engine.model, text)
         except NamingError:
             return False
         return True
@@ -525,7 +529,7 @@ class Adapter:
     def _injected(self, run: _Run, moments: Sequence[Moment]) -> None:
         run.stops.look()
         hit = next(filter(None, (run.stops.hit(moment) for moment in moments)), None)
-        self._stopped(hit or Stop("step", run.views.told(moments[-1])))
+        self._stopped(hit or Stop("step", run.views.describe(moments[-1])))
 
     def _completions(self, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
         engine = self._debugged.replay.engine
@@ -546,8 +550,8 @@ class Adapter:
 
     # Lines
 
-    def _line(self, given: Any) -> int:
-        line = given.get("line") if isinstance(given, dict) else None
+    def _line(self, position: Any) -> int:
+        line = position.get("line") if isinstance(position, dict) else None
         if not _is_integer(line):
             raise RequestError("`line` must be a number")
         return line + 1 - self._first_line
@@ -590,7 +594,7 @@ def _event(model: sct.SupervisoryControlModel, text: str) -> tuple[str, Mapping[
     """Return an event and its data as typed, by its name or in words. Raises NamingError, RequestError."""
     word, _, rest = text.partition(" ")
     try:
-        event = event_named(model, word)
+        event = find_event(model, word)
     except NamingError:
         try:
             step = spoken(model, text) if word in FIRST_WORDS else None
@@ -617,7 +621,7 @@ def _data(text: str, event: sct.Event) -> Mapping[str, Any]:
     return data if isinstance(data, dict) and set(data) <= known else {"value": data}
 
 
-def _said(error: Exception) -> str:
+def _error_text(error: Exception) -> str:
     if isinstance(error, OSError) and error.filename:
         return f"{error.filename}: {error.strerror}"
     return str(error)
@@ -639,7 +643,7 @@ def _natural(value: Any) -> int:
     return value if _is_integer(value) and value > 0 else 0
 
 
-def _objects(given: Any) -> list[dict[str, Any]]:
-    if given is not None and not (isinstance(given, list) and all(isinstance(item, dict) for item in given)):
+def _objects(items: Any) -> list[dict[str, Any]]:
+    if items is not None and not (isinstance(items, list) and all(isinstance(item, dict) for item in items)):
         raise RequestError("expected a list of objects")
-    return given or []
+    return items or []

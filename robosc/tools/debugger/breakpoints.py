@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from robosc.analysis.explain import NamingError, event_named
+from robosc.analysis.explain import NamingError, find_event
 from robosc.analysis.wording import name, words
 from robosc.engine import Blocked
 from robosc.model import sct
@@ -42,7 +42,9 @@ class Watcher:
         """Read the present state, after moving the previous reading to the state before."""
         engine = self._replay.engine
         self._before = self._now
-        self._now = {event: (engine.blocked_by(event), tuple(engine.failing(event))) for event in self._events}
+        self._now = {
+            event: (engine.blocked_by(event), tuple(engine.failing_requirements(event))) for event in self._events
+        }
 
     def watch(self, events: set[str]) -> None:
         """Watch these events from now on."""
@@ -112,19 +114,19 @@ class Targets:
         """Return the lines of a file in which a target begins."""
         return sorted({target.span.line for target in self._by_file.get(real(file), ()) if target.span is not None})
 
-    def named(self, text: str) -> list[Target]:
+    def targets_of(self, text: str) -> list[Target]:
         """Return the targets of `move`, `forbidden move`, `allowed move`, or a requirement.
 
         Raises NamingError.
         """
         for prefix, make in ((_FORBIDDEN, self._becomes_forbidden), (_ALLOWED, self._becomes_allowed)):
             if text.startswith(prefix):
-                return [make(event_named(self.model, text.removeprefix(prefix).strip()))]
+                return [make(find_event(self.model, text.removeprefix(prefix).strip()))]
         named = [requirement for requirement in self.model.requirements if requirement.name == text]
         if named:
             return [self._requirement(requirement) for requirement in named]
         try:
-            return [self._event(event_named(self.model, text))]
+            return [self._event(find_event(self.model, text))]
         except NamingError as error:
             plants = [plant for plant in self.model.plants if text in (name(plant), plant.name)]
             if plants:
@@ -137,7 +139,7 @@ class Targets:
         Raises NamingError.
         """
         if text.strip():
-            return [self._becomes_forbidden(event_named(self.model, name.strip())) for name in text.split(",")]
+            return [self._becomes_forbidden(find_event(self.model, name.strip())) for name in text.split(",")]
         kinds = (sct.EventKind.trigger, sct.EventKind.plain)
         events = [event for plant in self.model.plants for event in plant.events]
         return [self._becomes_forbidden(event) for event in events if event.controllable and event.kind in kinds]
@@ -175,27 +177,27 @@ class Targets:
 
     @staticmethod
     def _event(event: sct.Event) -> Target:
-        wanted = event_name(event)
-        return Target(words(event), None, lambda moment, _: moment.happened and moment.event == wanted)
+        target_name = event_name(event)
+        return Target(words(event), None, lambda moment, _: moment.happened and moment.event == target_name)
 
     @staticmethod
     def _requirement(requirement: sct.Requirement) -> Target:
         event = event_name(requirement.event)
-        told = requirement.text or requirement.name or "a requirement"
-        what = f"`{told}` begins to forbid the {words(requirement.event)}"
+        text = requirement.text or requirement.name or "a requirement"
+        what = f"`{text}` begins to forbid the {words(requirement.event)}"
         return Target(what, None, lambda _, watcher: watcher.fails(requirement), frozenset([event]))
 
     @staticmethod
     def _becomes_forbidden(event: sct.Event) -> Target:
-        wanted = event_name(event)
+        target_name = event_name(event)
         what = f"the {words(event)} becomes forbidden"
-        return Target(what, None, lambda _, watcher: watcher.forbidden(wanted), frozenset([wanted]))
+        return Target(what, None, lambda _, watcher: watcher.forbidden(target_name), frozenset([target_name]))
 
     @staticmethod
     def _becomes_allowed(event: sct.Event) -> Target:
-        wanted = event_name(event)
+        target_name = event_name(event)
         what = f"the {words(event)} becomes possible"
-        return Target(what, None, lambda _, watcher: watcher.allowed(wanted), frozenset([wanted]))
+        return Target(what, None, lambda _, watcher: watcher.allowed(target_name), frozenset([target_name]))
 
 
 def real(file: str) -> str:

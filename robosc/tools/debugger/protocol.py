@@ -156,9 +156,9 @@ def serve_stdio(handler: Callable[[Connection], Handler]) -> str | None:
 
 
 def _feed(source: IO[bytes], loop: asyncio.AbstractEventLoop, reader: asyncio.StreamReader) -> None:
-    read = getattr(source, "read1", source.read)
+    read_some = getattr(source, "read1", source.read)
     try:
-        while chunk := read(_CHUNK):
+        while chunk := read_some(_CHUNK):
             loop.call_soon_threadsafe(reader.feed_data, chunk)
         loop.call_soon_threadsafe(reader.feed_eof)
     except (OSError, ValueError, RuntimeError):

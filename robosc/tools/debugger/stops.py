@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.analysis.explain import NamingError
 from robosc.tools.debugger.breakpoints import Targets, Watcher, real
-from robosc.tools.debugger.views import shown
+from robosc.tools.debugger.views import format_value
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -81,7 +81,7 @@ class Stops:
     def hit(self, moment: Moment) -> Stop | None:
         """Return the reason for which the last step stops the run, or None if it does not."""
         if moment.by is not None and REFUSED in self._filters:
-            return Stop("exception", self._views.told(moment))
+            return Stop("exception", self._views.describe(moment))
         for reason, points in (("breakpoint", self._in_files), ("function breakpoint", self._by_name)):
             hit = [
                 (point.identifier, description) for point in points for description in self._hit(point.targets, moment)
@@ -90,8 +90,8 @@ class Stops:
                 return Stop(reason, hit[0][1], list(dict.fromkeys(number for number, _ in hit)))
         changed = [name for name in self._by_value if moment.before[name] != moment.after[name]]
         if changed:
-            said = f"{changed[0]} is {shown(moment.after[changed[0]])}"
-            return Stop("data breakpoint", said, [self._by_value[name] for name in changed])
+            change = f"{changed[0]} is {format_value(moment.after[changed[0]])}"
+            return Stop("data breakpoint", change, [self._by_value[name] for name in changed])
         forbidden = self._hit(self._filters.get(FORBIDDEN, ()), moment)
         return Stop("exception", forbidden[0]) if forbidden else None
 
@@ -119,70 +119,70 @@ class Stops:
         """Set breakpoints in lines of a model or of the script."""
         if real(path) == self._script:
             return self._set_in_script(lines)
-        points, told = [], []
+        points, answers = [], []
         for line in lines:
             targets = self._targets.at(path, line)
-            told.append(self._answer(targets, "this line has no element at which a robot can stop"))
-            told[-1]["line"] = min((target.span.line for target in targets if target.span), default=line)
-            points.append(_Breakpoint(told[-1]["id"], targets))
+            answers.append(self._answer(targets, "this line has no element at which a robot can stop"))
+            answers[-1]["line"] = min((target.span.line for target in targets if target.span), default=line)
+            points.append(_Breakpoint(answers[-1]["id"], targets))
         self._by_line[real(path)] = points
         self._watch()
-        return told
+        return answers
 
     def _set_in_script(self, lines: Sequence[int]) -> list[dict[str, Any]]:
         self._in_script.clear()
-        told = []
+        answers = []
         for line in lines:
-            told.append(self._answer([], "this line has no event") | {"line": line})
+            answers.append(self._answer([], "this line has no event") | {"line": line})
             if line in self._script_lines:
-                self._in_script[line] = told[-1]["id"]
-                told[-1] |= {"verified": True, "message": "stops before this event"}
-        return told
+                self._in_script[line] = answers[-1]["id"]
+                answers[-1] |= {"verified": True, "message": "stops before this event"}
+        return answers
 
     def by_name(self, names: Iterable[str]) -> list[dict[str, Any]]:
         """Set breakpoints at events, requirements and components by their names."""
         self._by_name.clear()
-        told = []
+        answers = []
         for name in names:
             try:
-                targets, fault = self._targets.named(name.strip()), ""
+                targets, fault = self._targets.targets_of(name.strip()), ""
             except NamingError as error:
                 targets, fault = [], str(error)
-            told.append(self._answer(targets, fault))
-            self._by_name.append(_Breakpoint(told[-1]["id"], targets))
+            answers.append(self._answer(targets, fault))
+            self._by_name.append(_Breakpoint(answers[-1]["id"], targets))
         self._watch()
-        return told
+        return answers
 
     def by_value(self, names: Iterable[str]) -> list[dict[str, Any]]:
         """Set breakpoints at changes of parts of the state."""
         self._by_value.clear()
-        told = []
+        answers = []
         for name in names:
-            told.append(self._answer([], f"{name} is not part of the state that changes"))
+            answers.append(self._answer([], f"{name} is not part of the state that changes"))
             if name in self._replay.engine.state:
-                self._by_value[name] = told[-1]["id"]
-                told[-1] |= {"verified": True, "message": f"{name} changes"}
-        return told
+                self._by_value[name] = answers[-1]["id"]
+                answers[-1] |= {"verified": True, "message": f"{name} changes"}
+        return answers
 
-    def filters(self, wanted: Iterable[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    def filters(self, requests: Iterable[Mapping[str, Any]]) -> list[dict[str, Any]]:
         """Set the filters that also stop the run.
 
         Each has a `filterId`, and optionally a `condition`: the commands to which it applies.
         """
         self._filters = {}
-        told: list[dict[str, Any]] = []
-        for requested in wanted:
+        answers: list[dict[str, Any]] = []
+        for requested in requests:
             name, condition = str(requested.get("filterId")), str(requested.get("condition") or "")
             if name not in {known["filter"] for known in FILTERS}:
-                told.append({"verified": False, "message": f"there is no filter `{name}`"})
+                answers.append({"verified": False, "message": f"there is no filter `{name}`"})
                 continue
             try:
                 self._filters[name] = self._targets.forbidding(condition) if name == FORBIDDEN else []
-                told.append({"verified": True})
+                answers.append({"verified": True})
             except NamingError as error:
-                told.append({"verified": False, "message": str(error)})
+                answers.append({"verified": False, "message": str(error)})
         self._watch()
-        return told
+        return answers
 
     def lines(self, path: str) -> list[int]:
         """Return the lines of a file at which a run can stop."""
@@ -190,11 +190,11 @@ class Stops:
 
     def _answer(self, targets: Sequence[Target], fault: str) -> dict[str, Any]:
         self._numbered += 1
-        said = "; ".join(dict.fromkeys(target.what for target in targets)) if targets else fault
-        return {"id": self._numbered, "verified": bool(targets), "message": said}
+        message = "; ".join(dict.fromkeys(target.what for target in targets)) if targets else fault
+        return {"id": self._numbered, "verified": bool(targets), "message": message}
 
     def _watch(self) -> None:
         points = [*self._in_files, *self._by_name]
         targets = [target for point in points for target in point.targets]
-        targets += [target for found in self._filters.values() for target in found]
+        targets += [target for filter_targets in self._filters.values() for target in filter_targets]
         self._watcher.watch({event for target in targets for event in target.events})

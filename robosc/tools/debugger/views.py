@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robosc.analysis.blocking_in_words import counterexample_in_words
-from robosc.analysis.explain import NEEDLESS, explain, explored, state_given
+from robosc.analysis.explain import NEEDLESS, explain, explore, parse_state
 from robosc.analysis.wording import in_words, name, words
 from robosc.base.files import reading as files
 from robosc.model import sct
@@ -84,31 +84,31 @@ class Views:
         if last.event == WAIT:
             return self._frame("time has passed", self._model)
         if last.event == REFUSE:
-            return self._frame(self.told(last), self._model)
+            return self._frame(self.describe(last), self._model)
         event = self.events[last.event]
-        return self._frame(self.told(last), next(iter(last.edges), event))
+        return self._frame(self.describe(last), next(iter(last.edges), event))
 
-    def told(self, moment: Moment) -> str:
+    def describe(self, moment: Moment) -> str:
         """Return a step in words."""
         if moment.event == WAIT:
             return f"{_seconds(moment.end.timers[0])} on the clock"
-        said = (
+        phrase = (
             refusal_in_words(self._engine, moment.data["of"])
             if moment.event == REFUSE
             else words(self.events[moment.event])
         )
         return (
-            said
+            phrase
             if moment.by is None
-            else f"{said} cannot happen: {self._replay.simulation.reason(moment.event, moment.by)}"
+            else f"{phrase} cannot happen: {self._replay.simulation.reason(moment.event, moment.by)}"
         )
 
-    def _frame(self, said: str, element: Any, plant: sct.Plant | None = None) -> Frame:
+    def _frame(self, label: str, element: Any, plant: sct.Plant | None = None) -> Frame:
         file, span = place(element)
         if not Path(file).is_file():
-            return Frame(said, None, plant=plant)
+            return Frame(label, None, plant=plant)
         return Frame(
-            said,
+            label,
             os.path.abspath(file),  # noqa: PTH100 - must not resolve links: the editor has the file open by this path
             span.line,
             self._units(file, span.line, span.column),
@@ -163,7 +163,7 @@ class Views:
 
     def _variables(self, plant: sct.Plant) -> list[Variable]:
         return [
-            Variable(variable.name, shown(self._engine.value(variable)), path=f"{name(plant)}.{variable.name}")
+            Variable(variable.name, format_value(self._engine.value(variable)), path=f"{name(plant)}.{variable.name}")
             for variable in plant.variables
         ]
 
@@ -194,27 +194,28 @@ class Views:
         ]
 
     def _why(self, event: str) -> Callable[[], Sequence[Variable]]:
-        return lambda: self._reasons(self.explained(event))
+        return lambda: self._reasons(self.explain(event))
 
-    def explained(self, event: str) -> Explanation:
+    def explain(self, event: str) -> Explanation:
         """Return the explanation of `explain` for an event in the present state."""
         key = event, self._engine.state
         if key not in self._explained:
-            codes = state_given(self._model, json.dumps({"state": whole_state(self._engine)}))
-            self._explained[key] = explored(self._model, lambda system: explain(system, self.events[event], codes))
+            codes = parse_state(self._model, json.dumps({"state": whole_state(self._engine)}))
+            self._explained[key] = explore(self._model, lambda system: explain(system, self.events[event], codes))
         return self._explained[key]
 
-    def _reasons(self, told: Explanation) -> list[Variable]:
+    def _reasons(self, explanation: Explanation) -> list[Variable]:
         reasons = [
-            Variable(at(note.element), note.text, _details(note.details)) for note in (*told.plants, *told.requirements)
+            Variable(at(note.element), note.text, _details(note.details))
+            for note in (*explanation.plants, *explanation.requirements)
         ]
-        if told.counterexample is not None:
-            reasons.append(Variable("otherwise", counterexample_in_words(told.counterexample, self._model)))
-        elif told.needless:
+        if explanation.counterexample is not None:
+            reasons.append(Variable("otherwise", counterexample_in_words(explanation.counterexample, self._model)))
+        elif explanation.needless:
             reasons.append(Variable("supervisor", NEEDLESS))
-        reasons += [Variable("would help", note.text) for note in told.changes]
-        if told.way:
-            reasons.append(Variable("shortest way", in_words(told.way, self._model)))
+        reasons += [Variable("would help", note.text) for note in explanation.changes]
+        if explanation.way:
+            reasons.append(Variable("shortest way", in_words(explanation.way, self._model)))
         return reasons
 
     # Names in the debug console
@@ -231,9 +232,9 @@ class Views:
             if owner in (name(plant), plant.name):
                 variable = next((variable for variable in plant.variables if variable.name == last), None)
                 if variable is not None:
-                    return shown(self._engine.value(variable))
+                    return format_value(self._engine.value(variable))
                 if last in {location.name for location in plant.locations}:
-                    return shown(here == last)
+                    return format_value(here == last)
         return None
 
     def state_name(self, text: str) -> str | None:
@@ -243,9 +244,9 @@ class Views:
         for plant in self._model.plants:
             own, inner = text in (name(plant), plant.name), owner in (name(plant), plant.name)
             known = [plant.name] if own else [f"{plant.name}.{last}", f"{name(plant)}.{last}"] if inner else []
-            found = next((candidate for candidate in known if candidate in state), None)
-            if found is not None:
-                return found
+            match = next((candidate for candidate in known if candidate in state), None)
+            if match is not None:
+                return match
         return text if text in state else None
 
 
@@ -255,7 +256,7 @@ def at(element: Any) -> str:
     return f"{Path(file).name}:{span.line}:{span.column}"
 
 
-def shown(value: object) -> str:
+def format_value(value: object) -> str:
     """Return a value as the language writes it."""
     return json.dumps(value) if isinstance(value, bool) else str(value)
 

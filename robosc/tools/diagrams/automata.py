@@ -11,10 +11,10 @@ from robosc.model import robosc, sct
 from robosc.model.semantics.durations import timer_text
 from robosc.model.semantics.edges import edges_from
 from robosc.model.semantics.instances import Instances
-from robosc.model.semantics.naming import written
+from robosc.model.semantics.naming import escape_keyword
 from robosc.model.semantics.printing import RoboscPrinter, SctPrinter
 from robosc.model.semantics.roles import event_name, plant_of
-from robosc.tools.diagrams.graph import Arrow, Graph, Group, Node
+from robosc.tools.diagrams.graph import Arrow, DiagramNode, Graph, Group
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -40,7 +40,7 @@ def plants_graph(model: sct.SupervisoryControlModel) -> Graph:
 
 
 @dataclass(frozen=True)
-class _Step:
+class _DiagramStep:
     """A step from a state (None: from every state) to another one (None: it stays)."""
 
     source: State | None
@@ -52,7 +52,9 @@ class _Step:
         return self.target is None or self.source is self.target
 
 
-def _automaton(key: str, title: str, remarks: Sequence[str], states: Sequence[State], steps: Sequence[_Step]) -> Group:
+def _automaton(
+    key: str, title: str, remarks: Sequence[str], states: Sequence[State], steps: Sequence[_DiagramStep]
+) -> Group:
     """Return the group of an automaton: steps that stay are rows of their state, steps between two states one arrow.
 
     The keys of the group's nodes begin with the key of the group.
@@ -68,11 +70,11 @@ def _automaton(key: str, title: str, remarks: Sequence[str], states: Sequence[St
         else:
             between.setdefault((keys[step.source], keys[step.target]), []).append(label)
     nodes = [
-        Node(keys[state], "state", visible(state.name), rows[state], initial=state.initial, marked=state.marked)
+        DiagramNode(keys[state], "state", visible(state.name), rows[state], initial=state.initial, marked=state.marked)
         for state in states
     ]
     if any(step.source is None for step in steps):
-        nodes.insert(0, Node(keys[None], "every", "everywhere", rows[None]))
+        nodes.insert(0, DiagramNode(keys[None], "every", "everywhere", rows[None]))
     arrows = [Arrow(source, target, tuple(labels)) for (source, target), labels in between.items()]
     return Group(key, visible(title), list(map(visible, remarks)), nodes, arrows)
 
@@ -97,7 +99,7 @@ class _Component(RoboscPrinter):
             self.instance.name,
             [self.variable(definition) for definition in definitions if isinstance(definition, robosc.Variable)],
             states,
-            [_Step(source, transition.target, self.label(transition)) for source, transition in sources],
+            [_DiagramStep(source, transition.target, self.label(transition)) for source, transition in sources],
         )
 
     def variable(self, variable: robosc.Variable) -> str:
@@ -129,9 +131,9 @@ class _Component(RoboscPrinter):
         """Return the name of a communication, qualified if it is of another component and the name is ambiguous."""
         port = self.instances.port(reference, self.instance)
         assert port is not None
-        name = written(port.communication.name)
+        name = escape_keyword(port.communication.name)
         others = sum(other.communication.name == port.communication.name for other in self.instances.ports())
-        return name if port.instance is self.instance or others == 1 else f"{written(port.instance.name)}.{name}"
+        return name if port.instance is self.instance or others == 1 else f"{escape_keyword(port.instance.name)}.{name}"
 
     def owner(self, component: robosc.Component) -> str:
         """Return the qualifier of a name, which is empty for the component itself."""
@@ -148,7 +150,9 @@ class _Plant(SctPrinter):
     def group(self, key: str) -> Group:
         locations = self.plant.locations
         steps = [
-            _Step(location, edge.target, self.label(edge)) for location in locations for edge in edges_from(location)
+            _DiagramStep(location, edge.target, self.label(edge))
+            for location in locations
+            for edge in edges_from(location)
         ]
         return _automaton(
             key,
@@ -187,7 +191,7 @@ class _Plant(SctPrinter):
         return super().atom(expression)
 
 
-def _joined(steps: list[_Step], locations: int, *, alike: bool) -> list[_Step]:
+def _joined(steps: list[_DiagramStep], locations: int, *, alike: bool) -> list[_DiagramStep]:
     """Merge steps that every location has into one, if all lead to the same location or all stay.
 
     With two locations a cycle between them would look like that, so they are only merged if they are `alike` on
@@ -206,7 +210,7 @@ def _joined(steps: list[_Step], locations: int, *, alike: bool) -> list[_Step]:
         for step in steps
         if (step.label, step.target) not in common and not (step.stays and (step.label, None) in common)
     ]
-    return [*(_Step(None, target, label) for label, target in common), *rest]
+    return [*(_DiagramStep(None, target, label) for label, target in common), *rest]
 
 
 def _type(kind: robosc.DataType | ex.Type) -> str:
@@ -214,7 +218,7 @@ def _type(kind: robosc.DataType | ex.Type) -> str:
         case ex.EnumerationType():
             return kind.enumeration.name
         case robosc.ComplexDataTypeReference():
-            return written(kind.type.name)
+            return escape_keyword(kind.type.name)
         case robosc.Array():
             return f"array({_type(kind.type)})"
         case ex.IntegerType() | robosc.IntegerDataType() if kind.minimum is not None:

@@ -67,10 +67,10 @@ def draw(diagram: ClassDiagram) -> Picture:
 
 def _links(diagram: ClassDiagram, shapes: dict[str, _Shape]) -> list[tuple[str, Link]]:
     """Return the links with their kinds."""
-    found: list[tuple[str, Link]] = []
+    links: list[tuple[str, Link]] = []
     for shown in diagram.classes:
         own = shapes[shown.name]
-        found += [
+        links += [
             ("inheritance", Link(parent, shown.name, shapes[parent].middle, own.middle, True))
             for parent in shown.parents
         ]
@@ -78,8 +78,8 @@ def _links(diagram: ClassDiagram, shapes: dict[str, _Shape]) -> list[tuple[str, 
             if _is_drawn(feature, shown):
                 kind = "containment" if feature.containment else "reference"
                 ranking = feature.containment or not feature.reference
-                found.append((kind, Link(shown.name, feature.type, port, shapes[feature.type].low, ranking)))
-    return sorted(found, key=lambda placed: _KINDS.index(placed[0]))
+                links.append((kind, Link(shown.name, feature.type, port, shapes[feature.type].low, ranking)))
+    return sorted(links, key=lambda placed: _KINDS.index(placed[0]))
 
 
 def _is_drawn(feature: Feature, owner: Class) -> bool:

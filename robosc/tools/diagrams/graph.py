@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Node:
+class DiagramNode:
     """A state or the node for all states (`every`); the `controller`; a `topic`, a `service` or an `action`.
 
     `key` is unique in the diagram, and a valid name in every notation. Rows are the steps that stay in a state, or the
@@ -45,7 +45,7 @@ class Group:
     key: str
     title: str
     remarks: Sequence[str]
-    nodes: Sequence[Node]
+    nodes: Sequence[DiagramNode]
     arrows: Sequence[Arrow]
 
 
@@ -57,6 +57,6 @@ class Graph:
     groups: Sequence[Group]
 
     @property
-    def nodes(self) -> list[Node]:
+    def nodes(self) -> list[DiagramNode]:
         """The nodes of all groups."""
         return [node for group in self.groups for node in group.nodes]

@@ -10,8 +10,8 @@ from robosc.tools.diagrams.picture import MARGIN, TITLE, Pen, text_width
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from robosc.tools.diagrams.graph import Arrow, Graph, Group, Node
-    from robosc.tools.diagrams.graph_layout import Layout, Rectangle
+    from robosc.tools.diagrams.graph import Arrow, DiagramNode, Graph, Group
+    from robosc.tools.diagrams.graph_layout import GraphLayout, Rectangle
     from robosc.tools.diagrams.picture import Picture, Point
 
 _GAP, _FRAME = 16.0, 14.0
@@ -48,7 +48,7 @@ class _Panel:
     def __init__(self, group: Group) -> None:
         self.group = group
         self.framed = bool(group.title)
-        self.layout: Layout = lay_out(group, downwards=self.framed)
+        self.layout: GraphLayout = lay_out(group, downwards=self.framed)
         above = HEAD + LINE * len(group.remarks) if self.framed else 0.0
         inset = _FRAME if self.framed else 0.0
         texts = [1.15 * text_width(group.title, 14), *(text_width(remark, ROW_SIZE) for remark in group.remarks)]
@@ -69,7 +69,7 @@ class _Panel:
         for arrow, corner, points in zip(self.group.arrows, self.layout.labels, self.layout.routes, strict=True):
             self.arrow(pen, arrow, corner, points)
 
-    def node(self, pen: Pen, node: Node, place: Rectangle) -> None:
+    def node(self, pen: Pen, node: DiagramNode, place: Rectangle) -> None:
         radius = {"state": 9, "every": 9, "topic": 13}.get(node.kind, 3)
         pen.box(node.kind, (place.x, place.y), (place.width, place.height), radius)
         if node.marked:

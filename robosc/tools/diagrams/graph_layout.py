@@ -14,7 +14,7 @@ from robosc.tools.diagrams.picture import text_width
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from robosc.tools.diagrams.graph import Arrow, Group, Label, Node
+    from robosc.tools.diagrams.graph import Arrow, DiagramNode, Group, Label
     from robosc.tools.diagrams.layers import Arrangement
     from robosc.tools.diagrams.picture import Point
 
@@ -43,7 +43,7 @@ class Rectangle:
 
 
 @dataclass(frozen=True)
-class Layout:
+class GraphLayout:
     """Rectangles of nodes, corners of the labels of arrows (None without labels), points of arrows, and the size."""
 
     nodes: Mapping[str, Rectangle]
@@ -58,7 +58,7 @@ def lines(labels: Iterable[Label]) -> list[tuple[float, str]]:
     return [(0.0 if number == 0 else INDENT, text) for label in labels for number, text in enumerate(label)]
 
 
-def lay_out(group: Group, *, downwards: bool) -> Layout:
+def lay_out(group: Group, *, downwards: bool) -> GraphLayout:
     """Arrange a group: arrows run downwards, or else to the right, except in cycles."""
     return _Layouter(group, downwards).layout()
 
@@ -79,7 +79,7 @@ class _Layouter:
             self.sides.setdefault((arrow.source, int(self.forward[number])), []).append(number)
             self.sides.setdefault((arrow.target, int(not self.forward[number])), []).append(number)
 
-    def layout(self) -> Layout:
+    def layout(self) -> GraphLayout:
         sizes = {node.key: self.size(node) for node in self.group.nodes}
         sizes |= {_label(number): _label_size(arrow) for number, arrow in enumerate(self.group.arrows) if arrow.labels}
         first = self.arranged(sizes)
@@ -90,7 +90,7 @@ class _Layouter:
         swapped = {key: self.swap(place) for key, place in arranged.places.items()}
         marks = {node.key: MARK if node.initial else 0.0 for node in self.group.nodes}
         width, height = self.swap((arranged.width, arranged.height))
-        return Layout(
+        return GraphLayout(
             {
                 key: Rectangle(swapped[key][0] + mark, swapped[key][1], sizes[key][0] - mark, sizes[key][1])
                 for key, mark in marks.items()
@@ -107,7 +107,7 @@ class _Layouter:
 
     def links(self, sizes: Mapping[str, Point]) -> list[list[Link]]:
         """Return, for each arrow, its links from its earlier node to its later one."""
-        found = []
+        links = []
         for number, arrow in enumerate(self.group.arrows):
             ends = (arrow.source, arrow.target) if self.forward[number] else (arrow.target, arrow.source)
             ports = [self.port(sizes, end, side, number) for end, side in zip(ends, (1, 0), strict=True)]
@@ -116,13 +116,13 @@ class _Layouter:
                 stops = [(ends[0], ports[0]), (_label(number), middle), (ends[1], ports[1])]
             else:
                 stops = list(zip(ends, ports, strict=True))
-            found.append(
+            links.append(
                 [
                     Link(source, target, source_port, target_port, True)
                     for (source, source_port), (target, target_port) in pairwise(stops)
                 ]
             )
-        return found
+        return links
 
     def port(self, sizes: Mapping[str, Point], key: str, side: int, number: int) -> float:
         numbers = self.sides[key, side]
@@ -139,14 +139,14 @@ class _Layouter:
         return arranged.places[other][1] + self.swap(sizes[other])[1] / 2
 
     def routes(self, arranged: Arrangement) -> list[list[Point]]:
-        found, rest = [], iter(arranged.routes)
+        routes, rest = [], iter(arranged.routes)
         for number, arrow in enumerate(self.group.arrows):
             pieces = [next(rest) for _ in range(2 if arrow.labels else 1)]
             points = [self.swap(point) for piece in pieces for point in piece.points]
-            found.append(points if self.forward[number] else points[::-1])
-        return found
+            routes.append(points if self.forward[number] else points[::-1])
+        return routes
 
-    def size(self, node: Node) -> Point:
+    def size(self, node: DiagramNode) -> Point:
         """Return width and height of a node, with room for all its arrows and its mark."""
         rows = lines(node.rows)
         texts = [1.1 * text_width(node.title, TITLE_SIZE), *(x + text_width(text, ROW_SIZE) for x, text in rows)]

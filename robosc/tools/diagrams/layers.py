@@ -145,14 +145,14 @@ def _chain(boxes: Mapping[str, _Item], link: Link) -> list[_Item]:
 
 def _ordered(boxes: Iterable[_Item], chains: Sequence[Sequence[_Item]]) -> list[_Item]:
     """Return all items, with linked items near each other."""
-    found: dict[_Item, None] = {}
+    ordered: dict[_Item, None] = {}
     pending = list(boxes)[::-1]
     while pending:
         item = pending.pop()
-        if item not in found:
-            found[item] = None
+        if item not in ordered:
+            ordered[item] = None
             pending += [neighbour for neighbour, _, _ in reversed(item.right)]
-    return list(found | dict.fromkeys(neighbour for chain in chains for neighbour in chain))
+    return list(ordered | dict.fromkeys(neighbour for chain in chains for neighbour in chain))
 
 
 def _fewest_crossings(layers: list[list[_Item]]) -> list[list[_Item]]:
@@ -196,19 +196,19 @@ def _set_tops(layers: Sequence[Sequence[_Item]]) -> None:
     for sweep in range(_SWEEPS):
         forward = sweep % 2 == 0
         for layer in layers if forward else layers[::-1]:
-            wanted = []
+            ideals = []
             for item in layer:
                 near = (item.left if forward else item.right) or item.left or item.right
                 heights = [neighbour.top + port - own for neighbour, port, own in near]
-                wanted.append(total(heights) / len(heights) if heights else item.top)
-            _place(layer, wanted)
+                ideals.append(total(heights) / len(heights) if heights else item.top)
+            _place(layer, ideals)
     highest = min((item.top for layer in layers for item in layer), default=0.0)
     for layer in layers:
         for item in layer:
             item.top -= highest
 
 
-def _place(layer: Sequence[_Item], wanted: Sequence[float]) -> None:
+def _place(layer: Sequence[_Item], ideal: Sequence[float]) -> None:
     """Move items as close to the wanted heights as their order and gaps allow (least squares)."""
     offsets, offset = [], 0.0
     for item, following in zip(layer, [*layer[1:], None], strict=True):
@@ -218,7 +218,7 @@ def _place(layer: Sequence[_Item], wanted: Sequence[float]) -> None:
             offset += item.height + gap
     # Pools of adjacent items that touch each other: the mean of their wanted heights, and their number.
     pools: list[tuple[float, int]] = []
-    for height, base in zip(wanted, offsets, strict=True):
+    for height, base in zip(ideal, offsets, strict=True):
         pools.append((height - base, 1))
         while len(pools) > 1 and pools[-2][0] >= pools[-1][0]:
             (upper, few), (lower, more) = pools[-2:]

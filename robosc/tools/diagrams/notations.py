@@ -11,7 +11,7 @@ from robosc.tools.diagrams.graph_drawing import draw
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from robosc.tools.diagrams.graph import Graph, Label, Node
+    from robosc.tools.diagrams.graph import DiagramNode, Graph, Label
 
 _MERMAID_SHAPES = {
     "controller": ("[", "]"),
@@ -61,7 +61,7 @@ def render(template: str, **values: object) -> str:
 def _mermaid(text: str | Label) -> str:
     """Return text for a label: lines joined by `<br/>`, and codes for all characters that may have a meaning."""
     lines = [text] if isinstance(text, str) else text
-    return "<br/>".join(_PLAIN.sub(lambda found: f"#{ord(found[0])};", line) for line in lines)
+    return "<br/>".join(_PLAIN.sub(lambda match: f"#{ord(match[0])};", line) for line in lines)
 
 
 def _dot(text: str) -> str:
@@ -77,7 +77,7 @@ def _dot_labels(labels: Sequence[Label]) -> str:
     return f'"{_dot_rows(labels)}"'
 
 
-def _dot_node(node: Node) -> str:
+def _dot_node(node: DiagramNode) -> str:
     rows = _dot_rows(node.rows)
     return f'"{_dot_line(node.title)}{chr(92) + "n" if rows else ""}{rows}"'
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from robosc.base.diagnostics.visible import visible
 from robosc.model.semantics.naming import controller_name
 from robosc.model.semantics.roles import plant_of
-from robosc.tools.diagrams.graph import Arrow, Graph, Group, Node
+from robosc.tools.diagrams.graph import Arrow, DiagramNode, Graph, Group
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -37,19 +37,19 @@ def ros_graph(graph: rosgraph.RosGraph) -> Graph:
 
     An arrow has the direction of the data. Services and actions have arrows with two heads.
     """
-    found = connections(graph)
+    connected = connections(graph)
     numbers = {kind: count(1) for kind in _KEYS}
-    keys = [f"{_KEYS[connection.kind]}{next(numbers[connection.kind])}" for connection in found]
+    keys = [f"{_KEYS[connection.kind]}{next(numbers[connection.kind])}" for connection in connected]
     nodes = [
-        Node(key, connection.kind, connection.name, [(row,) for row in (*connection.types, *connection.uses)])
-        for key, connection in zip(keys, found, strict=True)
+        DiagramNode(key, connection.kind, connection.name, [(row,) for row in (*connection.types, *connection.uses)])
+        for key, connection in zip(keys, connected, strict=True)
     ]
     arrows = []
-    for key, connection in zip(keys, found, strict=True):
+    for key, connection in zip(keys, connected, strict=True):
         comes_in = connection.kind == "topic" and connection.direction != "out"
         ends = (key, _CONTROLLER) if comes_in else (_CONTROLLER, key)
         arrows.append(Arrow(*ends, both=connection.direction == "both"))
-    controller = Node(_CONTROLLER, "controller", visible(controller_name(graph)))
+    controller = DiagramNode(_CONTROLLER, "controller", visible(controller_name(graph)))
     return Graph(f"{visible(graph.name)}: ROS graph", [Group("g", "", (), [*nodes, controller], arrows)])
 
 

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 from lsprotocol import types
 
-from robosc.language.annotating import notes
-from robosc.language.describing import event_text
-from robosc.language.outlining import span
+from robosc.language.document_symbols import span
+from robosc.language.hover import event_text
+from robosc.language.inlay_hints import notes
 from robosc.model import robosc as rsc
 from robosc.tools.editor.places import to_offset, to_range
 
@@ -41,8 +41,8 @@ def prepare_call_hierarchy(
     """Return the state at a position."""
     name = analysis.file.name_at(to_offset(analysis.text, params.position))
     state = name.target if name is not None else None
-    found = analysis.declarations.get(state) if isinstance(state, rsc.State) else None
-    return [] if found is None else [_item(snapshot, found[0], state)]
+    declaration = analysis.declarations.get(state) if isinstance(state, rsc.State) else None
+    return [] if declaration is None else [_item(snapshot, declaration[0], state)]
 
 
 def incoming_calls(
@@ -52,14 +52,14 @@ def incoming_calls(
 
     The component stands for transitions from every state.
     """
-    found: dict[Any, list[rsc.Transition]] = {}
+    by_source: dict[Any, list[rsc.Transition]] = {}
     state = _state(analysis, params.item)
     for transition in _transitions(state):
         if transition.target is state:
-            found.setdefault(_source(transition), []).append(transition)
+            by_source.setdefault(_source(transition), []).append(transition)
     return [
         types.CallHierarchyIncomingCall(_item(snapshot, analysis.file, source, leading), _ranges(analysis, leading))
-        for source, leading in found.items()
+        for source, leading in by_source.items()
     ]
 
 
@@ -67,14 +67,14 @@ def outgoing_calls(
     snapshot: Snapshot, analysis: Analysis, params: types.CallHierarchyOutgoingCallsParams
 ) -> list[types.CallHierarchyOutgoingCall]:
     """Return the states to which transitions lead from a state, with these transitions."""
-    found: dict[Any, list[rsc.Transition]] = {}
+    by_target: dict[Any, list[rsc.Transition]] = {}
     state = _state(analysis, params.item)
     for transition in _transitions(state):
         if transition.target is not None and _source(transition) in {state, _component(state)}:
-            found.setdefault(transition.target, []).append(transition)
+            by_target.setdefault(transition.target, []).append(transition)
     return [
         types.CallHierarchyOutgoingCall(_item(snapshot, analysis.file, target, leading), _ranges(analysis, leading))
-        for target, leading in found.items()
+        for target, leading in by_target.items()
         if target is not state
     ]
 
@@ -112,9 +112,9 @@ def _item(
 ) -> types.CallHierarchyItem:
     name = file.declared_names[element]
     owner = _component(element)
-    told = element.name if owner is element else f"{owner.name}.{element.name}"
+    label = element.name if owner is element else f"{owner.name}.{element.name}"
     return types.CallHierarchyItem(
-        name=told,
+        name=label,
         kind=types.SymbolKind.Class if owner is element else types.SymbolKind.EnumMember,
         uri=snapshot.uri(file.text.file),
         range=to_range(file.text, *span(file, element)),

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from lsprotocol import types
 
-from robosc.language.classifying import CLASSES, classify
+from robosc.language.semantic_tokens import CLASSES, classify
 
 if TYPE_CHECKING:
     from robosc.tools.editor.project import Analysis, Snapshot

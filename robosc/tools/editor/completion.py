@@ -7,18 +7,18 @@ from typing import TYPE_CHECKING
 
 from lsprotocol import types
 
-from robosc.language.classifying import what_of
-from robosc.language.completing import proposals, topic_at
-from robosc.language.describing import summary
+from robosc.language.completion import proposals, topic_at
+from robosc.language.hover import summary
 from robosc.language.libraries import LibraryPath
 from robosc.language.reading import read
+from robosc.language.semantic_tokens import what_of
 from robosc.language.signatures import signature
 from robosc.model import robosc as rsc
 from robosc.tools.editor.places import to_offset, to_range
 from robosc.tools.editor.snippets import SNIPPETS
 
 if TYPE_CHECKING:
-    from robosc.language.completing import Proposal
+    from robosc.language.completion import Proposal
     from robosc.language.reading import Reading
     from robosc.tools.editor.project import Analysis, Snapshot
 
@@ -52,31 +52,31 @@ def completion(snapshot: Snapshot, analysis: Analysis, params: types.CompletionP
         documents = {**snapshot.documents}
         if document is not None:
             documents[analysis.path] = replace(document, content=content)
-        with_text = snapshot.with_documents(documents)
+        with_text = snapshot.replace_documents(documents)
         return read(analysis.path, snapshot.libraries, snapshot.ros_types, with_text.texts)
 
     def libraries() -> list[str]:
-        return LibraryPath(snapshot.libraries, snapshot.texts).known(analysis.path)
+        return LibraryPath(snapshot.libraries, snapshot.texts).library_names(analysis.path)
 
-    start, end, found = proposals(text.content, offset, reread, snapshot.ros_types, libraries)
+    start, end, proposed = proposals(text.content, offset, reread, snapshot.ros_types, libraries)
     place = to_range(text, start, end)
-    items = [item for proposal in found for item in _items(proposal, place)]
+    items = [item for proposal in proposed for item in _items(proposal, place)]
     return types.CompletionList(is_incomplete=False, items=items)
 
 
 def _topics(snapshot: Snapshot, place: types.Range) -> list[types.CompletionItem]:
     """Return the names of topics, services and actions in the project and its libraries."""
-    found: dict[str, str] = {}
+    details: dict[str, str] = {}
     analyses = [analysis for path in snapshot.models() if (analysis := snapshot.analysis(path)) is not None]
     for file in (file for analysis in analyses for file in analysis.reading.files.values()):
         for element in file.declared_names:
             if isinstance(element, rsc.CommunicationType) and element.identifier:
-                found.setdefault(element.identifier, summary(element))
+                details.setdefault(element.identifier, summary(element))
     return [
         types.CompletionItem(
-            name, kind=types.CompletionItemKind.Value, detail=found[name], text_edit=types.TextEdit(place, name)
+            name, kind=types.CompletionItemKind.Value, detail=details[name], text_edit=types.TextEdit(place, name)
         )
-        for name in sorted(found)
+        for name in sorted(details)
     ]
 
 
@@ -90,11 +90,11 @@ def _items(proposal: Proposal, place: types.Range) -> list[types.CompletionItem]
     # Names come before words of the language, and these before whole definitions.
     order = "0" if kind is not types.CompletionItemKind.Keyword else "1"
     detail = summary(proposal.element) if proposal.element is not None else None
-    found = [
+    items = [
         types.CompletionItem(proposal.text, kind=kind, detail=detail, text_edit=edit, sort_text=order + proposal.text)
     ]
     if proposal.starts:
-        found += (
+        items += (
             types.CompletionItem(
                 label,
                 kind=types.CompletionItemKind.Snippet,
@@ -106,14 +106,14 @@ def _items(proposal: Proposal, place: types.Range) -> list[types.CompletionItem]
             )
             for label, body, _ in SNIPPETS.get(proposal.text, ())
         )
-    return found
+    return items
 
 
 def signature_help(_: Snapshot, analysis: Analysis, params: types.SignatureHelpParams) -> types.SignatureHelp | None:
     """Return the signature of the call around a position."""
-    found = signature(analysis.reading, to_offset(analysis.text, params.position))
-    if found is None:
+    called = signature(analysis.reading, to_offset(analysis.text, params.position))
+    if called is None:
         return None
-    parameters = [types.ParameterInformation(parameter) for parameter in found.parameters]
-    shown = types.SignatureInformation(found.label, parameters=parameters, active_parameter=found.active)
-    return types.SignatureHelp([shown], active_signature=0, active_parameter=found.active)
+    parameters = [types.ParameterInformation(parameter) for parameter in called.parameters]
+    shown = types.SignatureInformation(called.label, parameters=parameters, active_parameter=called.active)
+    return types.SignatureHelp([shown], active_signature=0, active_parameter=called.active)

@@ -14,7 +14,7 @@ from pygls.exceptions import JsonRpcException
 from robosc.base.diagnostics import Severity, in_order
 from robosc.base.diagnostics.rules import address
 from robosc.base.interruption import checkpoint
-from robosc.language.checks.fixing import Safety, safe_edits, safety_of
+from robosc.language.checks.automatic_edits import Safety, safe_edits, safety_of
 from robosc.language.libraries import declared_name
 from robosc.model import robosc as rsc
 from robosc.tools.editor.places import span_range, to_edits, to_range
@@ -40,12 +40,12 @@ _SEVERITIES = {
 }
 
 
-def published(snapshot: Snapshot, analyses: Iterable[Analysis]) -> dict[Path, list[types.Diagnostic]]:
+def findings_by_path(snapshot: Snapshot, analyses: Iterable[Analysis]) -> dict[Path, list[types.Diagnostic]]:
     """Return the findings in each text that these analyses read, by its path, each finding once."""
     findings: dict[str, list[Diagnostic]] = {}
     texts: dict[str, Text] = {}
     for analysis in analyses:
-        texts |= {file: read.text for file, read in analysis.reading.files.items()}
+        texts |= {file: source.text for file, source in analysis.reading.files.items()}
         for finding in analysis.findings:
             findings.setdefault(finding.file, []).append(finding)
     return {
@@ -54,7 +54,7 @@ def published(snapshot: Snapshot, analyses: Iterable[Analysis]) -> dict[Path, li
     }
 
 
-def abandoned(why: str) -> types.Diagnostic:
+def abandoned_diagnostic(why: str) -> types.Diagnostic:
     """Return the diagnostic of a text whose analysis was abandoned."""
     place = types.Range(types.Position(0, 0), types.Position(0, 1))
     message = f"{why}: the findings of this file are missing\nhint: run `robosc check` on it"
@@ -63,10 +63,10 @@ def abandoned(why: str) -> types.Diagnostic:
 
 def quickly(snapshot: Snapshot, path: Path) -> list[types.Diagnostic] | None:
     """Return the findings in a large text before it is read as a whole, or None if that is impossible."""
-    found = snapshot.quick_findings(path)
-    if found is None:
+    quick = snapshot.quick_findings(path)
+    if quick is None:
         return None
-    text, texts, findings = found
+    text, texts, findings = quick
     return [diagnostic(snapshot, finding, texts) for finding in findings if finding.file == text.file]
 
 
@@ -94,20 +94,20 @@ def code_actions(snapshot: Snapshot, analysis: Analysis, params: types.CodeActio
     only = params.context.only
     text, uri = analysis.text, params.text_document.uri
     own = [finding for finding in analysis.findings if finding.file == text.file]
-    found: list[types.CodeAction] = []
+    actions: list[types.CodeAction] = []
     if only is None or types.CodeActionKind.QuickFix in only:
         places = ((finding, span_range(text, finding.span)) for finding in own)
         there = [
             finding for finding, place in places if place.start <= params.range.end and params.range.start <= place.end
         ]
-        found += _quick_fixes(snapshot, analysis, params, there)
-        found += _library_folders(snapshot, analysis, params.range)
+        actions += _quick_fixes(snapshot, analysis, params, there)
+        actions += _library_folders(snapshot, analysis, params.range)
     if only is not None and any(kind == _MEND_ALL or _MEND_ALL.startswith(f"{kind}.") for kind in only):
         certain = safe_edits(analysis, partial(_checked, snapshot, analysis))
         if certain:
             whole = types.WorkspaceEdit({uri: to_edits(text, certain)})
-            found.append(types.CodeAction("Apply all hints", kind=_MEND_ALL, edit=whole))
-    return found
+            actions.append(types.CodeAction("Apply all hints", kind=_MEND_ALL, edit=whole))
+    return actions
 
 
 def _quick_fixes(
@@ -160,15 +160,15 @@ def _change(
 def _checked(snapshot: Snapshot, analysis: Analysis, content: str) -> Analysis:
     """Return the analysis with another content of the text."""
     document = snapshot.documents[analysis.path]
-    after = snapshot.with_documents({**snapshot.documents, analysis.path: replace(document, content=content)})
-    found = after.analysis(analysis.path)
-    assert found is not None
-    return found
+    after = snapshot.replace_documents({**snapshot.documents, analysis.path: replace(document, content=content)})
+    checked = after.analysis(analysis.path)
+    assert checked is not None
+    return checked
 
 
 def _library_folders(snapshot: Snapshot, analysis: Analysis, place: types.Range) -> list[types.CodeAction]:
     """Return an action for each folder of the project with a library in a range that the search did not find."""
-    found = []
+    actions = []
     for name in analysis.file.names:
         at = to_range(analysis.text, name.start, name.end)
         missing = isinstance(name.user, rsc.ImportedComponent) and name.feature == "library" and name.target is None
@@ -176,8 +176,8 @@ def _library_folders(snapshot: Snapshot, analysis: Analysis, place: types.Range)
             for folder in dict.fromkeys(path.parent for path in snapshot.models() if _declares(snapshot, path, name)):
                 title = f"also search libraries in {folder}"
                 command = types.Command(title, command=ADD_LIBRARY_FOLDER, arguments=[snapshot.uri(str(folder))])
-                found.append(types.CodeAction(title, kind=types.CodeActionKind.QuickFix, command=command))
-    return found
+                actions.append(types.CodeAction(title, kind=types.CodeActionKind.QuickFix, command=command))
+    return actions
 
 
 def _declares(snapshot: Snapshot, path: Path, name: Reference) -> bool:

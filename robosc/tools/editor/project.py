@@ -20,7 +20,7 @@ from urllib.parse import quote
 from pygls.uris import from_fs_path, to_fs_path
 
 from robosc.base.diagnostics import in_order
-from robosc.base.files.finding import files_below
+from robosc.base.files.search import files_below
 from robosc.base.interruption import checkpoint
 from robosc.base.ros_types import RosTypes
 from robosc.language.checks import check
@@ -126,7 +126,7 @@ Range = tuple[int, int, int, int]
 def _replaced(content: str, place: Range, text: str) -> str:
     """Replace a range of a text; the text has the line breaks of the editor."""
     line, unit, end_line, end_unit = place
-    breaks = [found.span() for found in _BREAK.finditer(content)]
+    breaks = [match.span() for match in _BREAK.finditer(content)]
     start = _offset(content, breaks, line, unit)
     end = _offset(content, breaks, end_line, end_unit)
     return content[:start] + text + content[max(start, end) :]
@@ -180,8 +180,8 @@ class Analysis:
 
     def key(self, element: Any) -> tuple[str, int] | None:
         """Return an identity of an element that all analyses share: the file and offset of its name."""
-        found = self.declarations.get(element)
-        return None if found is None else (found[0].text.file, found[1].start)
+        declaration = self.declarations.get(element)
+        return None if declaration is None else (declaration[0].text.file, declaration[1].start)
 
 
 @dataclass
@@ -189,7 +189,7 @@ class _Memory:
     """The last analysis of each text, and the texts on which it depends."""
 
     analyses: dict[Path, tuple[Analysis, Mapping[Path, str], Mapping[Path, str | None]]] = field(default_factory=dict)
-    made: int = 0
+    analysis_count: int = 0
     locks: defaultdict[Path, threading.Lock] = field(default_factory=lambda: defaultdict(threading.Lock))
 
     @contextmanager
@@ -211,8 +211,8 @@ class _Memory:
 
     def count(self) -> None:
         """Count an analysis; collect garbage now and then, because models contain reference cycles."""
-        self.made += 1
-        if self.made % _COLLECTED == 0:
+        self.analysis_count += 1
+        if self.analysis_count % _COLLECTED == 0:
             gc.collect()
 
 
@@ -276,9 +276,9 @@ class Snapshot:
         documents = {**self.documents, path: replace(document, content=part.content)}
         sliced = replace(self, documents=documents, memory=_Memory())
         reading = read(path, self.libraries, self.ros_types, sliced.texts)
-        found = part.findings([*reading.findings, *check(reading.base, reading.findings, self.ros_types)])
+        findings = part.findings([*reading.findings, *check(reading.base, reading.findings, self.ros_types)])
         texts = {file: other.text for file, other in analysis.reading.files.items()} | {text.file: text}
-        return None if found is None else (text, texts, in_order(found))
+        return None if findings is None else (text, texts, in_order(findings))
 
     def _content(self, path: Path) -> str | None:
         document = self.documents.get(path)
@@ -292,25 +292,25 @@ class Snapshot:
             for path, document in self.documents.items()
         }
 
-    def edited(self, edits: Mapping[Path, Iterable[Edit]]) -> Snapshot:
+    def apply_edits(self, edits: Mapping[Path, Iterable[Edit]]) -> Snapshot:
         """Return the project after edits of texts, by their paths."""
         documents = dict(self.documents)
         for path, changes in edits.items():
             before = documents.get(path) or Document(path.as_uri(), None, self.texts.read(path).decode())
             text, _ = decode(str(path), before.content.encode("utf-8", "surrogatepass"))
             documents[path] = replace(before, content=text.after(changes, before.content))
-        return self.with_documents(documents)
+        return self.replace_documents(documents)
 
-    def with_documents(self, documents: Mapping[Path, Document]) -> Snapshot:
+    def replace_documents(self, documents: Mapping[Path, Document]) -> Snapshot:
         """Return the project with other texts."""
         return replace(self, documents=documents, memory=_Memory())
 
     def models(self) -> list[Path]:
         """Return the paths of all open texts and of all texts in the editor's folders, hidden folders excluded."""
-        found = dict.fromkeys(self.documents)
+        paths = dict.fromkeys(self.documents)
         for folder in self.folders:
-            found |= dict.fromkeys(Path(path).resolve() for path in files_below(folder, ".rscd"))
-        return list(found)
+            paths |= dict.fromkeys(Path(path).resolve() for path in files_below(folder, ".rscd"))
+        return list(paths)
 
     def analyses_with(self, word: str) -> Iterator[Analysis]:
         """Yield the analyses of all texts of the project that contain a word."""

@@ -6,16 +6,16 @@ from typing import TYPE_CHECKING
 
 from lsprotocol import types
 
-from robosc.language.describing import describe
+from robosc.language.document_symbols import around, folds, outline
 from robosc.language.formatting import format_edits
-from robosc.language.outlining import around, folds, outline
+from robosc.language.hover import describe
 from robosc.model import robosc as rsc
 from robosc.tools.editor.places import location, to_offset, to_range
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from robosc.language.outlining import Item
+    from robosc.language.document_symbols import Item
     from robosc.language.scopes import File, Reference
     from robosc.language.text import Text
     from robosc.tools.editor.project import Analysis, Snapshot
@@ -46,7 +46,7 @@ _KINDS: dict[type, types.SymbolKind] = {
 
 
 def _kind(element: object) -> types.SymbolKind:
-    return next(kind for made, kind in _KINDS.items() if isinstance(element, made))
+    return next(kind for element_kind, kind in _KINDS.items() if isinstance(element, element_kind))
 
 
 def symbols(_: Snapshot, analysis: Analysis, params: types.DocumentSymbolParams) -> list[types.DocumentSymbol]:
@@ -69,7 +69,7 @@ def _symbols(text: Text, items: Iterable[Item]) -> list[types.DocumentSymbol]:
 
 def workspace_symbols(snapshot: Snapshot, query: str) -> list[types.WorkspaceSymbol]:
     """Return the named definitions of the project whose names contain the letters of a query in this order."""
-    found = []
+    results = []
     for path in snapshot.models():
         analysis = snapshot.analysis(path)
         if analysis is None:
@@ -77,8 +77,8 @@ def workspace_symbols(snapshot: Snapshot, query: str) -> list[types.WorkspaceSym
         for item, holder in _flat(outline(analysis.file)):
             if item.element in analysis.file.declared_names and _matches(query, item.name):
                 place = location(snapshot, analysis.text, item.name_start, item.name_end)
-                found.append(types.WorkspaceSymbol(place, item.name, _kind(item.element), container_name=holder))
-    return found
+                results.append(types.WorkspaceSymbol(place, item.name, _kind(item.element), container_name=holder))
+    return results
 
 
 def _flat(items: Iterable[Item], holder: str | None = None) -> Iterator[tuple[Item, str | None]]:
@@ -99,16 +99,16 @@ def folding_ranges(_: Snapshot, analysis: Analysis, params: types.FoldingRangePa
         (text.to_utf16(start)[0], text.to_utf16(end)[0]): types.FoldingRangeKind.Region
         for start, end in folds(analysis.file)
     }
-    found = [types.FoldingRange(first, last - 1) for first, last in sorted(lines) if last - first > 1]
+    ranges = [types.FoldingRange(first, last - 1) for first, last in sorted(lines) if last - first > 1]
     comments = [index for index, line in enumerate(text.content.split("\n")) if line.lstrip().startswith("//")]
     start = None
     for index, line in enumerate(comments):
         start = line if start is None else start
         if index + 1 == len(comments) or comments[index + 1] != line + 1:
             if line > start:
-                found.append(types.FoldingRange(start, line, kind=types.FoldingRangeKind.Comment))
+                ranges.append(types.FoldingRange(start, line, kind=types.FoldingRangeKind.Comment))
             start = None
-    return found
+    return ranges
 
 
 def selection_ranges(_: Snapshot, analysis: Analysis, params: types.SelectionRangeParams) -> list[types.SelectionRange]:
@@ -127,10 +127,10 @@ def _selection(analysis: Analysis, position: types.Position) -> types.SelectionR
 def hover(snapshot: Snapshot, analysis: Analysis, params: types.HoverParams) -> types.Hover | None:
     """Return the description of the name at a position."""
     name = analysis.file.name_at(to_offset(analysis.text, params.position))
-    said = describe(analysis.reading, name.target, snapshot.ros_types) if name is not None else None
-    if name is None or said is None:
+    description = describe(analysis.reading, name.target, snapshot.ros_types) if name is not None else None
+    if name is None or description is None:
         return None
-    shown = types.MarkupContent(types.MarkupKind.Markdown, said)
+    shown = types.MarkupContent(types.MarkupKind.Markdown, description)
     return types.Hover(shown, to_range(analysis.text, name.start, name.end))
 
 
@@ -139,10 +139,10 @@ def definition(snapshot: Snapshot, analysis: Analysis, params: types.DefinitionP
     name = analysis.file.name_at(to_offset(analysis.text, params.position))
     if name is None or name.target is None:
         return []
-    found = analysis.declarations.get(name.target)
-    if found is None:
+    declaration = analysis.declarations.get(name.target)
+    if declaration is None:
         return []
-    file, declared = found
+    file, declared = declaration
     selection = to_range(file.text, declared.start, declared.end)
     origin = to_range(analysis.text, name.start, name.end)
     return [types.LocationLink(snapshot.uri(file.text.file), selection, selection, origin)]
@@ -154,13 +154,13 @@ def occurrences(snapshot: Snapshot, analysis: Analysis, offset: int) -> list[tup
     key = analysis.key(name.target) if name is not None and name.target is not None else None
     if name is None or key is None:
         return []
-    found: dict[tuple[str, int], tuple[File, Reference]] = {}
+    by_place: dict[tuple[str, int], tuple[File, Reference]] = {}
     for other in [analysis, *snapshot.analyses_with(name.name)]:
         for file in other.reading.files.values():
             for reference in file.names:
                 if reference.name == name.name and other.key(reference.target) == key:
-                    found.setdefault((file.text.file, reference.start), (file, reference))
-    return [found[place] for place in sorted(found)]
+                    by_place.setdefault((file.text.file, reference.start), (file, reference))
+    return [by_place[place] for place in sorted(by_place)]
 
 
 def references(snapshot: Snapshot, analysis: Analysis, params: types.ReferenceParams) -> list[types.Location]:

@@ -10,9 +10,9 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
 from robosc.base.diagnostics import Edit
-from robosc.language.checks.fixing import objection
+from robosc.language.checks.automatic_edits import objection
 from robosc.language.tokens import is_name
-from robosc.model.semantics.naming import written
+from robosc.model.semantics.naming import escape_keyword
 from robosc.tools.editor.places import to_edits, to_offset, to_range
 from robosc.tools.editor.reading import occurrences
 
@@ -73,10 +73,10 @@ def rename_everywhere(
     for file, reference in occurrences(snapshot, analysis, name.start):
         texts[file.text.file] = file.text
         place = file.text.span(reference.start, reference.end)
-        edits.setdefault(file.text.file, []).append(Edit(place, written(new)))
+        edits.setdefault(file.text.file, []).append(Edit(place, escape_keyword(new)))
     _require_same(snapshot, analysis, name.name, edits, mended)
-    changes = {file: to_edits(texts[file], found) for file, found in edits.items() if found}
-    return types.WorkspaceEdit({snapshot.uri(file): found for file, found in changes.items()})
+    changes = {file: to_edits(texts[file], edits_of_file) for file, edits_of_file in edits.items() if edits_of_file}
+    return types.WorkspaceEdit({snapshot.uri(file): edits_of_file for file, edits_of_file in changes.items()})
 
 
 def renaming_of(file: File, edits: Collection[Edit]) -> Renaming | None:
@@ -111,19 +111,19 @@ def _require_same(
 
     They are also rejected if the word occurs in an unreadable part of a text.
     """
-    analyses = {analysis.path: analysis} | {found.path: found for found in snapshot.analyses_with(word)}
+    analyses = {analysis.path: analysis} | {dependent.path: dependent for dependent in snapshot.analyses_with(word)}
     by_path = {Path(name).resolve(): changes for name, changes in edits.items()}
     analyses |= {found.path: found for found in snapshot.importers(by_path)}
-    for found in analyses.values():
-        for file in found.reading.files.values():
+    for later in analyses.values():
+        for file in later.reading.files.values():
             skipped = (file.text.content[start:end] for start, end in file.skipped)
             if any(re.search(rf"\b{re.escape(word)}\b", part) for part in skipped):
                 raise _refused(f"correct {file.text.file} first: `{word}` is in an unreadable part")
-    after = snapshot.edited(by_path)
-    for path, found in analyses.items():
+    after = snapshot.apply_edits(by_path)
+    for path, later in analyses.items():
         renamed = after.analysis(path)
-        own = {name: by_path[at] for name in found.reading.files if (at := Path(name).resolve()) in by_path}
-        why = "" if renamed is None else objection(found, renamed, own, mended if found is analysis else ())
+        own = {name: by_path[at] for name in later.reading.files if (at := Path(name).resolve()) in by_path}
+        why = "" if renamed is None else objection(later, renamed, own, mended if later is analysis else ())
         if why is not None:
             raise _refused(f"this would change the meaning of {path.name}{why and f': {why}'}")
 

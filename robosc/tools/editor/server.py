@@ -23,7 +23,7 @@ from pygls.exceptions import JsonRpcException
 from pygls.lsp.server import LanguageServer
 from pygls.protocol import LanguageServerProtocol, lsp_method
 
-from robosc.base.interruption import checking
+from robosc.base.interruption import call_at_checkpoints
 from robosc.language.grammar import language
 from robosc.tools.editor import reading
 from robosc.tools.editor.answers import Verdict
@@ -33,9 +33,9 @@ from robosc.tools.editor.completion import OPTIONS, SIGNATURE_OPTIONS, completio
 from robosc.tools.editor.findings import (
     ADD_LIBRARY_FOLDER,
     CODE_ACTION_OPTIONS,
-    abandoned,
+    abandoned_diagnostic,
     code_actions,
-    published,
+    findings_by_path,
     quickly,
 )
 from robosc.tools.editor.places import to_offset
@@ -151,18 +151,18 @@ class Server(LanguageServer):
         if the editor has the commands of the extension for VS Code.
         """
         options = params.initialization_options
-        given: Mapping[str, Any] = options if isinstance(options, dict) else {}
-        libraries, interfaces = (_strings(given.get(name)) for name in ("libraryPaths", "interfacePaths"))
+        settings: Mapping[str, Any] = options if isinstance(options, dict) else {}
+        libraries, interfaces = (_strings(settings.get(name)) for name in ("libraryPaths", "interfacePaths"))
         self.project = Project([*libraries, *self.project.libraries], [*interfaces, *self.project.interfaces])
-        self._pause = float(given["pause"]) / 1000 if isinstance(given.get("pause"), int | float) else _PAUSE
-        self.has_commands = given.get("commands") is True
+        self._pause = float(settings["pause"]) / 1000 if isinstance(settings.get("pause"), int | float) else _PAUSE
+        self.has_commands = settings.get("commands") is True
         self.take_folders()
 
     def add_library_folder(self, folder: str) -> None:
         """Search one more folder for libraries."""
         self.project.libraries = (*self.project.libraries, self.project.path(folder))
         self.project.forget()
-        self.changed()
+        self.search_later()
 
     def take_folders(self) -> None:
         """Apply the editor's folders."""
@@ -188,7 +188,7 @@ class Server(LanguageServer):
         def in_turn() -> _Answer:
             check = self._check(snapshot, canceled)
             check()
-            with checking(check):
+            with call_at_checkpoints(check):
                 return job(snapshot)
 
         try:
@@ -209,7 +209,7 @@ class Server(LanguageServer):
 
         return check
 
-    def changed(self, typed: Path | None = None) -> None:
+    def search_later(self, typed: Path | None = None) -> None:
         """Search for findings after a pause without further changes.
 
         `typed` is the text in which the user typed.
@@ -219,10 +219,10 @@ class Server(LanguageServer):
             self._waiting.cancel()
         self._waiting = asyncio.get_running_loop().create_task(self._find(typed))
 
-    def verdict(self, asked: Question) -> Verdict | str | None:
+    def verdict(self, query: Question) -> Verdict | str | None:
         """Return the verdict of synthesis, or None if it is not yet known."""
         project = self.project
-        return self.verdicts.ask(asked, list(map(str, project.libraries)), list(map(str, project.interfaces)))
+        return self.verdicts.ask(query, list(map(str, project.libraries)), list(map(str, project.interfaces)))
 
     def _refresh_lenses(self) -> None:
         workspace = self.client_capabilities.workspace
@@ -240,65 +240,69 @@ class Server(LanguageServer):
             await asyncio.sleep(_REST)
 
         try:
-            found = await asyncio.get_running_loop().run_in_executor(self._finder, self._findings, snapshot)
+            diagnostics = await asyncio.get_running_loop().run_in_executor(self._finder, self._findings, snapshot)
         except (RuntimeError, JsonRpcException):
             return  # The server stops, or a text has changed.
         if self.project.is_current(snapshot):
-            self._publish(snapshot, found)
+            self._publish(snapshot, diagnostics)
 
     def _findings(self, snapshot: Snapshot) -> dict[Path, list[types.Diagnostic]]:
         """Return the diagnostics to publish for all texts. Raises JsonRpcException if one of them has changed."""
-        analyses, told = [], {}
+        analyses, published_findings = [], {}
         for path in snapshot.documents:
             try:
-                with checking(self._check(snapshot)):
+                with call_at_checkpoints(self._check(snapshot)):
                     analysis = snapshot.analysis(path)
             except JsonRpcException as error:
                 if error.code != _REQUEST_FAILED:
                     raise
-                told[path] = [abandoned(_TOO_LONG)]
+                published_findings[path] = [abandoned_diagnostic(_TOO_LONG)]
                 continue
             if analysis is not None:
                 analyses.append(analysis)
-        told |= {path: found for path, found in published(snapshot, analyses).items() if path not in told}
+        published_findings |= {
+            path: diagnostics
+            for path, diagnostics in findings_by_path(snapshot, analyses).items()
+            if path not in published_findings
+        }
         for analysis in analyses:
             if analysis.is_large:
                 analysis.slices.prepare()
-        return told
+        return published_findings
 
     async def _find_quickly(self, snapshot: Snapshot, path: Path) -> bool:
         """Publish the findings of the definition in which the user typed, and return whether this is possible."""
 
         def in_turn() -> list[types.Diagnostic] | None:
-            with checking(self._check(snapshot)):
+            with call_at_checkpoints(self._check(snapshot)):
                 return quickly(snapshot, path)
 
         try:
-            found = await asyncio.get_running_loop().run_in_executor(self._quick, in_turn)
+            diagnostics = await asyncio.get_running_loop().run_in_executor(self._quick, in_turn)
         except (RuntimeError, JsonRpcException):
             return False  # The server stops, a text has changed, or the search took too long.
-        if found is not None and self.project.is_current(snapshot):
+        if diagnostics is not None and self.project.is_current(snapshot):
             version = snapshot.documents[path].version
-            self._published[path] = version, found
-            told = types.PublishDiagnosticsParams(snapshot.uri(str(path)), found, version)
-            self.text_document_publish_diagnostics(told)
-        return found is not None
+            self._published[path] = version, diagnostics
+            params = types.PublishDiagnosticsParams(snapshot.uri(str(path)), diagnostics, version)
+            self.text_document_publish_diagnostics(params)
+        return diagnostics is not None
 
-    def _publish(self, snapshot: Snapshot, found: Mapping[Path, list[types.Diagnostic]]) -> None:
+    def _publish(self, snapshot: Snapshot, findings: Mapping[Path, list[types.Diagnostic]]) -> None:
         """Publish changed diagnostics.
 
         A file that is not open is published only if it has, or had, findings.
         """
-        for path in [*found, *(path for path in self._published if path not in found)]:
+        for path in [*findings, *(path for path in self._published if path not in findings)]:
             document = snapshot.documents.get(path)
-            version, diagnostics = document.version if document else None, found.get(path, [])
+            version, diagnostics = document.version if document else None, findings.get(path, [])
             if self._published.get(path, (None, [])) == (version, diagnostics) and path in self._published:
                 continue
             if document is None and not diagnostics and not self._published.get(path, (None, []))[1]:
                 continue
             self._published[path] = version, diagnostics
-            told = types.PublishDiagnosticsParams(snapshot.uri(str(path)), diagnostics, version)
-            self.text_document_publish_diagnostics(told)
+            params = types.PublishDiagnosticsParams(snapshot.uri(str(path)), diagnostics, version)
+            self.text_document_publish_diagnostics(params)
 
 
 def _strings(value: Any) -> list[str]:
@@ -324,33 +328,33 @@ def _register_texts(server: Server) -> None:
     def did_open(params: types.DidOpenTextDocumentParams) -> None:
         opened = params.text_document
         server.tell_again(server.project.put(opened.uri, opened.version, opened.text))
-        server.changed()
+        server.search_later()
 
     @server.feature(types.TEXT_DOCUMENT_DID_CHANGE)
     def did_change(params: types.DidChangeTextDocumentParams) -> None:
         changes = [(_place(change), change.text) for change in params.content_changes]
         server.project.change(params.text_document.uri, params.text_document.version, changes)
-        server.changed(server.project.path(params.text_document.uri))
+        server.search_later(server.project.path(params.text_document.uri))
 
     @server.feature(types.TEXT_DOCUMENT_DID_CLOSE)
     def did_close(params: types.DidCloseTextDocumentParams) -> None:
         server.project.close(params.text_document.uri)
-        server.changed()
+        server.search_later()
 
     @server.feature(types.TEXT_DOCUMENT_DID_SAVE)
     def did_save(_: types.DidSaveTextDocumentParams) -> None:
         server.project.forget()
-        server.changed()
+        server.search_later()
 
     @server.feature(types.WORKSPACE_DID_CHANGE_WATCHED_FILES)
     def did_change_files(_: types.DidChangeWatchedFilesParams) -> None:
         server.project.forget()
-        server.changed()
+        server.search_later()
 
     @server.feature(types.WORKSPACE_DID_CHANGE_WORKSPACE_FOLDERS)
     def did_change_folders(_: types.DidChangeWorkspaceFoldersParams) -> None:
         server.take_folders()
-        server.changed()
+        server.search_later()
 
 
 async def _watch_files(server: Server) -> None:
@@ -387,27 +391,27 @@ def _register_answers(server: Server) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_CODE_LENS)
     async def code_lens(params: types.CodeLensParams) -> list[types.CodeLens]:
-        asked = await server.answer(params.text_document.uri, question)
-        if asked is None:
+        query = await server.answer(params.text_document.uri, question)
+        if query is None:
             return []
-        return lenses(asked, server.verdict(asked), params.text_document.uri, commands=server.has_commands)
+        return lenses(query, server.verdict(query), params.text_document.uri, commands=server.has_commands)
 
     @server.feature(types.TEXT_DOCUMENT_HOVER)
     async def hover(params: types.HoverParams) -> types.Hover | None:
         def job(snapshot: Snapshot, analysis: Analysis) -> tuple[types.Hover | None, str | None, Question | None]:
             named = communication_at(analysis, to_offset(analysis.text, params.position))
-            asked = question(snapshot, analysis) if named is not None else None
-            return reading.hover(snapshot, analysis, params), named, asked
+            query = question(snapshot, analysis) if named is not None else None
+            return reading.hover(snapshot, analysis, params), named, query
 
         answer = await server.answer(params.text_document.uri, job)
-        found, named, asked = answer or (None, None, None)
+        description, named, query = answer or (None, None, None)
         # A later hover shows the verdict, even in an editor without code lenses.
-        known = server.verdict(asked) if asked is not None else None
-        if found is not None and named is not None and isinstance(known, Verdict) and named in known.guards:
-            assert isinstance(found.contents, types.MarkupContent)
+        known = server.verdict(query) if query is not None else None
+        if description is not None and named is not None and isinstance(known, Verdict) and named in known.guards:
+            assert isinstance(description.contents, types.MarkupContent)
             guards = "\n".join(f"- {guard}" for guard in known.guards[named])
-            found.contents.value += f"\n\nThe supervisor allows its\n{guards}"
-        return found
+            description.contents.value += f"\n\nThe supervisor allows its\n{guards}"
+        return description
 
     @server.feature(types.WORKSPACE_SYMBOL)
     async def workspace_symbols(params: types.WorkspaceSymbolParams) -> list[types.WorkspaceSymbol]:
@@ -418,9 +422,9 @@ def _register_commands(server: Server) -> None:
     @server.command(ADD_LIBRARY_FOLDER)
     def add_library_folder(folder: str) -> None:
         server.add_library_folder(folder)
-        said = "until the editor ends; set `libraryPaths` or ROBOSC_PATH to keep it"
-        told = f"libraries are also searched in {server.project.path(folder)}, {said}"
-        server.window_show_message(types.ShowMessageParams(types.MessageType.Info, told))
+        duration = "until the editor ends; set `libraryPaths` or ROBOSC_PATH to keep it"
+        message = f"libraries are also searched in {server.project.path(folder)}, {duration}"
+        server.window_show_message(types.ShowMessageParams(types.MessageType.Info, message))
 
 
 def _handler(server: Server, job: Callable[[Snapshot, Analysis, Any], Any]) -> Callable[[Any], Awaitable[Any]]:

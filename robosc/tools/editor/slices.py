@@ -39,7 +39,7 @@ _VISIBLE = (
     rsc.AutomatonRequirement,
 )
 #: Types of components whose communication is declared elsewhere.
-_MADE = (rsc.ImportedComponent, rsc.InstantiatedComponent)
+_INSTANTIATED = (rsc.ImportedComponent, rsc.InstantiatedComponent)
 
 
 class Slices:
@@ -53,7 +53,7 @@ class Slices:
     def prepare(self) -> None:
         """Compute the data for the first slice in advance."""
         self._needed(set(), set())
-        _ = self._naming, self._visible, self._made
+        _ = self._naming, self._visible, self._templates
 
     def slice(self, text: Text) -> Slice | None:
         """Return the slice for a text that differs from this one within one definition, or None."""
@@ -73,14 +73,14 @@ class Slices:
         if index + 1 < len(self._ranges) and "\n" not in before[end : self._ranges[index + 1][0]]:
             return None
         words = set(_WORD.findall(after[start : end + grown]))
-        kept = self._needed({index, *self._naming[index], *self._made, *self._neighbours(index)}, words)
+        included = self._needed({index, *self._naming[index], *self._templates, *self._neighbours(index)}, words)
         parts, at = [], 0
         for other, (first, behind) in enumerate(self._ranges):
             moved = grown if other > index else 0
             own_end = behind + (grown if other >= index else 0)
             parts.append(after[at : first + moved])
             own = after[first + moved : own_end]
-            parts.append(own if other in kept else _blank(own))
+            parts.append(own if other in included else _blank(own))
             at = own_end
         parts.append(after[at:])
         users = [self._ranges[other] for other in sorted(self._naming[index])]
@@ -89,16 +89,16 @@ class Slices:
     def _neighbours(self, index: int) -> Iterable[int]:
         return (other for other in (index - 1, index + 1) if 0 <= other < len(self._ranges))
 
-    def _needed(self, wanted: set[int], words: set[str]) -> set[int]:
+    def _needed(self, indices: set[int], words: set[str]) -> set[int]:
         """Return these definitions, those that the words may name, and all that they name in turn."""
-        pending = [*wanted, *(index for word in words for index in self._visible.get(word, ()))]
-        found: set[int] = set()
+        pending = [*indices, *(index for word in words for index in self._visible.get(word, ()))]
+        needed: set[int] = set()
         while pending:
             index = pending.pop()
-            if index not in found:
-                found.add(index)
+            if index not in needed:
+                needed.add(index)
                 pending += self._named[index]
-        return found
+        return needed
 
     @cached_property
     def _ranges(self) -> list[tuple[int, int]]:
@@ -115,44 +115,44 @@ class Slices:
 
     @cached_property
     def _visible(self) -> dict[str, set[int]]:
-        found: dict[str, set[int]] = {}
+        by_name: dict[str, set[int]] = {}
         for element, name in self._file.declared_names.items():
             index = self._index(name.start) if isinstance(element, _VISIBLE) else None
             if index is not None:
-                found.setdefault(name.text, set()).add(index)
-        return found
+                by_name.setdefault(name.text, set()).add(index)
+        return by_name
 
     @cached_property
     def _declared(self) -> dict[Any, int]:
-        found = ((element, self._index(name.start)) for element, name in self._file.declared_names.items())
-        return {element: index for element, index in found if index is not None}
+        indexed = ((element, self._index(name.start)) for element, name in self._file.declared_names.items())
+        return {element: index for element, index in indexed if index is not None}
 
     @cached_property
     def _named(self) -> list[set[int]]:
         """Definitions that a definition names, by its index."""
-        found: list[set[int]] = [set() for _ in self._ranges]
+        named: list[set[int]] = [set() for _ in self._ranges]
         for name in self._file.names:
             target = self._declared.get(name.target) if not name.is_declaration else None
             index = self._index(name.start) if target is not None else None
             if index is not None and target is not None and target != index:
-                found[index].add(target)
-        return found
+                named[index].add(target)
+        return named
 
     @cached_property
     def _naming(self) -> list[set[int]]:
         """Definitions that name a definition, by its index."""
-        found: list[set[int]] = [set() for _ in self._ranges]
+        naming: list[set[int]] = [set() for _ in self._ranges]
         for index, named in enumerate(self._named):
             for other in named:
-                found[other].add(index)
-        return found
+                naming[other].add(index)
+        return naming
 
     @cached_property
-    def _made(self) -> set[int]:
+    def _templates(self) -> set[int]:
         return {
             index
             for element, index in self._declared.items()
-            if isinstance(element, rsc.Component) and isinstance(element.type, _MADE)
+            if isinstance(element, rsc.Component) and isinstance(element.type, _INSTANTIATED)
         }
 
     def has(self, finding: Diagnostic) -> bool:
@@ -171,10 +171,10 @@ class Slices:
             by = last - end.line if (span.line, span.column) > (end.line, end.column) else 0
             return Span(span.line + by, span.column, span.end_line + by, span.end_column)
 
-        found = []
+        others = []
         for finding in self._findings:
             if finding.file != text.file:
-                found.append(finding)
+                others.append(finding)
             elif _is_name(finding) and _within(text.offset(finding.span.line, finding.span.column), users):
                 continue
             elif not (start.line, start.column) <= (finding.span.line, finding.span.column) <= (end.line, end.column):
@@ -187,10 +187,10 @@ class Slices:
                     replace(other, span=moved(other.span)) if other.file == text.file else other
                     for other in finding.related
                 )
-                found.append(
+                others.append(
                     replace(finding, span=moved(finding.span), edits=edits, related=related, alternatives=ways)
                 )
-        return found
+        return others
 
 
 @dataclass(frozen=True)
@@ -208,13 +208,13 @@ class Slice:
     grown: int
     users: Sequence[tuple[int, int]]
 
-    def findings(self, found: Iterable[Diagnostic]) -> list[Diagnostic] | None:
+    def findings(self, own_findings: Iterable[Diagnostic]) -> list[Diagnostic] | None:
         """Return the findings of the whole text from those of the slice, or None if other definitions are affected."""
         start, end = self.before[0], self.before[1] + self.grown
         moved = ((*user, self.grown if user[0] > start else 0) for user in self.users)
         users = [(first + by, last + by) for first, last, by in moved]
         own = []
-        for finding in found:
+        for finding in own_findings:
             if finding.file == self.text.file:
                 at = self.text.offset(finding.span.line, finding.span.column)
                 within = start <= at <= end

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from lsprotocol import types
 
 from robosc.base.diagnostics import has_errors
-from robosc.language.outlining import outline
+from robosc.language.document_symbols import outline
 from robosc.model import robosc as rsc
 from robosc.tools.editor.answers import Request, Verdict
 from robosc.tools.editor.places import to_range
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
-    from robosc.language.outlining import Item
+    from robosc.language.document_symbols import Item
     from robosc.tools.editor.project import Analysis, Snapshot
 
 COMMAND = (sys.executable, "-m", "robosc.tools.editor.verdict")
@@ -52,22 +52,25 @@ def question(_: Snapshot, analysis: Analysis) -> Question | None:
 
 
 def lenses(
-    asked: Question, verdict: Verdict | str | None, uri: str = "", *, commands: bool = False
+    query: Question, verdict: Verdict | str | None, uri: str = "", *, commands: bool = False
 ) -> list[types.CodeLens]:
     """Return the lenses above the robot and its requirements.
 
     With `commands`, these include lenses for commands, which the editor itself runs on the robot's text `uri`.
     """
-    robot, *_ = asked.places
-    done = [_lens(asked.places[robot], title, command, [uri]) for title, command in COMMANDS.items() if commands]
+    robot, *_ = query.places
+    done = [_lens(query.places[robot], title, command, [uri]) for title, command in COMMANDS.items() if commands]
     if not isinstance(verdict, Verdict):
-        return [_lens(asked.places[robot], verdict or RUNNING), *done]
-    told = {robot: verdict.robot, **{int(line): title for line, title in verdict.requirements.items()}}
-    return [*(_lens(asked.places[line], title) for line, title in told.items() if line in asked.places), *done]
+        return [_lens(query.places[robot], verdict or RUNNING), *done]
+    titles = {robot: verdict.robot, **{int(line): title for line, title in verdict.requirements.items()}}
+    return [
+        *(_lens(query.places[line], title) for line, title in titles.items() if line in query.places),
+        *done,
+    ]
 
 
-def _lens(place: types.Range, said: str, command: str = "", arguments: Sequence[Any] | None = None) -> types.CodeLens:
-    return types.CodeLens(place, types.Command(said, command=command, arguments=arguments))
+def _lens(place: types.Range, title: str, command: str = "", arguments: Sequence[Any] | None = None) -> types.CodeLens:
+    return types.CodeLens(place, types.Command(title, command=command, arguments=arguments))
 
 
 def communication_at(analysis: Analysis, offset: int) -> str | None:
@@ -84,7 +87,7 @@ def communication_at(analysis: Analysis, offset: int) -> str | None:
 
 
 def _all(items: Sequence[Item]) -> list[Item]:
-    return [found for item in items for found in (item, *_all(item.items))]
+    return [nested_item for item in items for nested_item in (item, *_all(item.items))]
 
 
 class Verdicts:
@@ -97,23 +100,23 @@ class Verdicts:
         self._answers: dict[Path, tuple[Mapping[str, str], Verdict | str]] = {}
         self._running: dict[Path, tuple[Mapping[str, str], asyncio.Task[None]]] = {}
 
-    def ask(self, asked: Question, libraries: Sequence[str], interfaces: Sequence[str]) -> Verdict | str | None:
+    def ask(self, query: Question, libraries: Sequence[str], interfaces: Sequence[str]) -> Verdict | str | None:
         """Return the verdict on exactly these texts, or why there is none; None while synthesis runs."""
-        known = self.known(asked.path, asked.texts)
+        known = self.lookup(query.path, query.texts)
         if known is not None:
             return known
-        running = self._running.get(asked.path)
-        if running is None or running[0] != asked.texts:
+        running = self._running.get(query.path)
+        if running is None or running[0] != query.texts:
             if running is not None:
                 running[1].cancel()
-            task = asyncio.get_running_loop().create_task(self._look(asked, libraries, interfaces))
-            self._running[asked.path] = asked.texts, task
+            task = asyncio.get_running_loop().create_task(self._look(query, libraries, interfaces))
+            self._running[query.path] = query.texts, task
         return None
 
-    def known(self, path: Path, texts: Mapping[str, str]) -> Verdict | str | None:
+    def lookup(self, path: Path, texts: Mapping[str, str]) -> Verdict | str | None:
         """Return the verdict on exactly these texts, or None if there is none."""
-        found = self._answers.get(path)
-        return found[1] if found is not None and found[0] == texts else None
+        answer = self._answers.get(path)
+        return answer[1] if answer is not None and answer[0] == texts else None
 
     def cancel(self) -> None:
         """Stop all processes, because texts have changed."""
@@ -121,18 +124,18 @@ class Verdicts:
             task.cancel()
         self._running = {}
 
-    async def _look(self, asked: Question, libraries: Sequence[str], interfaces: Sequence[str]) -> None:
+    async def _look(self, query: Question, libraries: Sequence[str], interfaces: Sequence[str]) -> None:
         pipe = asyncio.subprocess.PIPE
-        request = json.dumps(asdict(Request(str(asked.path), asked.texts, libraries, interfaces))).encode()
+        request = json.dumps(asdict(Request(str(query.path), query.texts, libraries, interfaces))).encode()
         process = await asyncio.create_subprocess_exec(
             *self._command, stdin=pipe, stdout=pipe, stderr=asyncio.subprocess.DEVNULL
         )
         answer: Verdict | str
         try:
             async with asyncio.timeout(_LONGEST):
-                said, _ = await process.communicate(request)
+                output, _ = await process.communicate(request)
             answer = (
-                Verdict(**json.loads(said))
+                Verdict(**json.loads(output))
                 if process.returncode == 0
                 else "synthesis failed: `robosc synthesize` shows the error"
             )
@@ -142,6 +145,6 @@ class Verdicts:
             if process.returncode is None:
                 process.kill()
                 await process.wait()
-        self._answers[asked.path] = asked.texts, answer
-        self._running.pop(asked.path, None)
+        self._answers[query.path] = query.texts, answer
+        self._running.pop(query.path, None)
         self._news()

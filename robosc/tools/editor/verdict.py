@@ -16,13 +16,13 @@ from typing import TYPE_CHECKING
 
 import robosc
 from robosc.analysis.supervise import supervise
-from robosc.analysis.system import counted
+from robosc.analysis.system import format_count
 from robosc.base.diagnostics import ModelError, has_errors
 from robosc.model import sct
 from robosc.model.places import place
 from robosc.model.semantics.printing import RobotPrinter, conjunction
 from robosc.model.semantics.roles import plant_of
-from robosc.model.semantics.walks import copied
+from robosc.model.semantics.walks import copy_tree
 from robosc.tools.editor.answers import Request, Verdict
 
 if TYPE_CHECKING:
@@ -47,26 +47,26 @@ def verdict(request: Request) -> Verdict:
 
 def _verdict(path: str, model: sct.SupervisoryControlModel, supervision: Supervision) -> Verdict:
     synthesis = supervision.synthesis
-    states = f"{counted(synthesis.controlled_states, 'state')} under its supervisor"
+    states = f"{format_count(synthesis.controlled_states, 'state')} under its supervisor"
     without = synthesis.uncontrolled_states
-    told = states + (f", {without} without requirements" if without is not None else "")
+    size = states + (f", {without} without requirements" if without is not None else "")
     faults = [finding.message for finding in supervision.findings if has_errors([finding])]
     requirements = {}
     for weight in synthesis.weights:
         file, span = place(weight.requirements[0])
         if file == path:
             forbids = "forbids" if isinstance(weight.requirements[0], sct.StateInvariant) else "restricts the robot in"
-            said = f"{forbids} {counted(weight.states, 'state')}" if weight.states else "matters in no state"
-            requirements[str(span.line)] = said
+            effect = f"{forbids} {format_count(weight.states, 'state')}" if weight.states else "matters in no state"
+            requirements[str(span.line)] = effect
     guards: dict[str, list[str]] = {}
     printed = RobotPrinter()
     for guard in synthesis.supervisor.guards if synthesis.supervisor is not None else ():
-        whole = conjunction(copied(part) for part in (guard.requirement, guard.synthesis) if part)
+        whole = conjunction(copy_tree(part) for part in (guard.requirement, guard.synthesis) if part)
         origin = plant_of(guard.event).origin
         if whole is not None and origin and guard.event.kind in (sct.EventKind.trigger, sct.EventKind.cancel):
             name = "request" if guard.event.kind == sct.EventKind.trigger else "cancel"
             guards.setdefault(origin, []).append(f"{name}: {printed(whole)}")
-    return Verdict("; ".join([told, *faults]), requirements, guards)
+    return Verdict("; ".join([size, *faults]), requirements, guards)
 
 
 def main() -> None:

@@ -75,8 +75,10 @@ def model(choices: Choices) -> str:
 
 
 def _base(choices: Choices) -> str:
-    told = 'identifier: "/cmd_vel", type: geometry_msgs/Twist' if choices.twist else 'identifier: "/{}", type: none'
-    messages = "\n".join(f"incoming message {name} with {told.format(name)}" for name in choices.commands)
+    interface = (
+        'identifier: "/cmd_vel", type: geometry_msgs/Twist' if choices.twist else 'identifier: "/{}", type: none'
+    )
+    messages = "\n".join(f"incoming message {name} with {interface.format(name)}" for name in choices.commands)
     return f"  component Base {{\n{messages}\n}}\n"
 
 
@@ -102,8 +104,8 @@ def _provided(choices: Choices) -> str:
 
 def condition(choices: Choices) -> str:
     """Return the condition for the command in words."""
-    said = [f"`/{name}` has last said true" for name in choices.sensors]
+    conditions = [f"`/{name}` has last said true" for name in choices.sensors]
     if choices.service:
-        said.append(f"`/{choices.service}` has succeeded")
-    *others, last = said
+        conditions.append(f"`/{choices.service}` has succeeded")
+    *others, last = conditions
     return f"{', '.join(others)} and {last}" if others else last

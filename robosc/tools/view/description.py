@@ -7,12 +7,12 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
 from robosc.analysis.wording import name, words
-from robosc.language.highlighting.lines import coloured
+from robosc.language.highlighting.lines import color_lines
 from robosc.language.text import Text
 from robosc.model import expression as ex
 from robosc.model import rosgraph, sct
 from robosc.model.places import place
-from robosc.model.semantics.definition import reported
+from robosc.model.semantics.definition import reported_variables
 from robosc.model.semantics.domains import domain
 from robosc.model.semantics.edges import edges_of, origin
 from robosc.model.semantics.roles import Roles, event_name, plant_of
@@ -67,7 +67,7 @@ def describe(models: Models, texts: Mapping[str, str]) -> dict[str, Any]:
         "commands": [event_name(event) for event in commands_of(model)],
         "requirements": requirements + invariants,
         "communication": [] if models.rosgraph is None else _communication(models),
-        "files": [{"name": PurePath(path).name, "lines": coloured(path, text)} for path, text in texts.items()],
+        "files": [{"name": PurePath(path).name, "lines": color_lines(path, text)} for path, text in texts.items()],
     }
 
 
@@ -83,13 +83,13 @@ def commands_of(model: sct.SupervisoryControlModel) -> list[sct.Event]:
 
 def transitions_of(plant: sct.Plant) -> list[list[sct.Edge]]:
     """Return the transitions of an automaton, each with all edges that were created for it."""
-    found: dict[object, list[sct.Edge]] = {}
+    by_key: dict[object, list[sct.Edge]] = {}
     for edge in edges_of(plant):
         if not _is_written(edge):
             continue
         key = (origin(edge), edge.target, str(edge.source or ""), edge.event)
-        found.setdefault(key, []).append(edge)
-    return list(found.values())
+        by_key.setdefault(key, []).append(edge)
+    return list(by_key.values())
 
 
 def _is_written(edge: sct.Edge) -> bool:
@@ -105,7 +105,7 @@ def _is_written(edge: sct.Edge) -> bool:
 class _Describer:
     def __init__(self, texts: Mapping[str, str], graph: rosgraph.RosGraph | None) -> None:
         self._graph = graph
-        self._reported = {} if graph is None else reported(graph)
+        self._reported = {} if graph is None else reported_variables(graph)
         self._texts = {path: Text(path, text) for path, text in texts.items()}
         self.files: dict[str, int] = {path: number for number, path in enumerate(texts)}
 
@@ -130,7 +130,10 @@ class _Describer:
         A transition from every state has `source` null.
         """
         position = {location: number for number, location in enumerate(plant.locations)}
-        variables: list[sct.DiscreteVariable | rosgraph.NodeVariable] = [*plant.variables, *self._kept(plant)]
+        variables: list[sct.DiscreteVariable | rosgraph.NodeVariable] = [
+            *plant.variables,
+            *self._stored_variables(plant),
+        ]
         return {
             "name": name(plant),
             "key": plant.name,
@@ -162,7 +165,7 @@ class _Describer:
             ],
         }
 
-    def _kept(self, plant: sct.Plant) -> list[rosgraph.NodeVariable]:
+    def _stored_variables(self, plant: sct.Plant) -> list[rosgraph.NodeVariable]:
         """Return the variables of a component that only the node stores, not the supervisor."""
         return self._reported.get(plant.origin, []) if plant.kind == sct.PlantKind.behaviour else []
 
@@ -195,19 +198,22 @@ class _Describer:
             "owner": plant_of(event).origin or plant_of(event).name,
             "place": self.place(event) or self.place(plant_of(event)),
             **({"timer": True} if event.timer is not None else {}),
-            "inputs": [{"name": given.name, "label": _label(given), **_values(given.type)} for given in event.inputs],
+            "inputs": [
+                {"name": event_input.name, "label": _label(event_input), **_values(event_input.type)}
+                for event_input in event.inputs
+            ],
             "kept": [] if self._graph is None else self._beside(event, self._graph),
         }
 
     @staticmethod
     def _beside(event: sct.Event, graph: rosgraph.RosGraph) -> list[dict[str, Any]]:
         """Return the data of an event that only the node stores: the path of fields, and the kind of input field."""
-        found = data_beside(graph, event)
-        is_lone = not event.inputs and len(found) == 1
+        types_by_path = data_beside(graph, event)
+        is_lone = not event.inputs and len(types_by_path) == 1
         return [
             {"path": list(path), "label": "value" if is_lone and len(path) < 2 else ".".join(["value", *path])}
             | {"kind": _KINDS[type(kind)]}
-            for path, kind in found.items()
+            for path, kind in types_by_path.items()
         ]
 
 
@@ -219,9 +225,9 @@ def _spelled(tokens: Sequence[Token]) -> str:
     return "".join(pieces)
 
 
-def _label(given: sct.Input) -> str:
+def _label(event_input: sct.Input) -> str:
     """Return the path of an input in the data of its event, as the text of the model writes it."""
-    return given.text or ".".join(["value", *given.name.split("_")[2:]])
+    return event_input.text or ".".join(["value", *event_input.name.split("_")[2:]])
 
 
 def _values(kind: ex.Type) -> dict[str, Any]:

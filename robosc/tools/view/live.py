@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from robosc.base.files.json_reading import JsonError, json_value
 from robosc.model.semantics.definition import definition
-from robosc.run.simulation.tracking import ReportError, Tracker
+from robosc.run.simulation.tracker import ReportError, Tracker
 from robosc.tools.view.moments import Moments
 
 if TYPE_CHECKING:
@@ -15,14 +15,14 @@ if TYPE_CHECKING:
     from robosc.run.simulation import Simulation
 
 #: Maximum number of moments that a live view stores.
-KEPT = 20_000
+CAPACITY = 20_000
 
 
 class Live(Moments):
     """Moments of a running node; `nodes` are the names of the nodes that may report them."""
 
-    def __init__(self, simulation: Simulation, graph: rosgraph.RosGraph, nodes: str, kept: int = KEPT) -> None:
-        super().__init__(simulation, graph, kept)
+    def __init__(self, simulation: Simulation, graph: rosgraph.RosGraph, nodes: str, capacity: int = CAPACITY) -> None:
+        super().__init__(simulation, graph, capacity)
         self._nodes = nodes
         self._tracker = Tracker(self.engine)
         self._definition = json.dumps(definition(graph), sort_keys=True)
@@ -37,7 +37,7 @@ class Live(Moments):
         self._publishers = publishers
         self._say()
 
-    def defined(self, text: str) -> None:
+    def receive_definition(self, text: str) -> None:
         """Receive the JSON text of a definition, when a node or this listener has started."""
         self._faults.clear()
         try:
@@ -48,7 +48,7 @@ class Live(Moments):
         self._tracker.begin()
         self._say()
 
-    def told(self, text: str) -> None:
+    def receive_report(self, text: str) -> None:
         """Receive the JSON text of one report on `~/state`."""
         try:
             report = json_value(text)

@@ -7,11 +7,11 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from robosc.analysis.blocking_in_words import counterexample_in_words
-from robosc.analysis.explain import NEEDLESS, explain, explored, state_given
+from robosc.analysis.explain import NEEDLESS, explain, explore, parse_state
 from robosc.analysis.wording import in_words, words
 from robosc.model.semantics.roles import Roles, event_name
-from robosc.run.simulation.kept import Kept
 from robosc.run.simulation.simulation import whole_state
+from robosc.run.simulation.stored_variables import StoredVariables
 from robosc.tools.view.description import automata_of, commands_of, transitions_of
 
 if TYPE_CHECKING:
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from robosc.engine.state import State
     from robosc.model import rosgraph, sct
     from robosc.run.simulation import Simulation
-    from robosc.run.simulation.kept import Values
-    from robosc.run.simulation.tracking import Told
+    from robosc.run.simulation.stored_variables import Values
+    from robosc.run.simulation.tracker import ReportedMoment
 
 
 #: Maximum number of cached answers of `explain`.
@@ -76,9 +76,9 @@ class Moments:
         self.moments: list[dict[str, Any]] = []
         self._states: list[State] = []
         self._running: list[Mapping[str, int]] = []
-        self._node = Kept(self.engine, graph)
+        self._node = StoredVariables(self.engine, graph)
         #: Variables that only the node stores, at each moment.
-        self._kept: list[Values] = []
+        self._stored: list[Values] = []
         self._verdicts: dict[str, dict[str, str] | None] = {}
 
     @property
@@ -96,42 +96,42 @@ class Moments:
         self,
         time: float,
         running: Mapping[str, int],
-        told: Mapping[str, Any],
+        entries: Mapping[str, Any],
         edges: Iterable[sct.Edge],
-        kept: Values,
+        stored: Values,
     ) -> None:
         """Add a moment with the present state of the engine; `running` has the milliseconds left of timers."""
-        moment: dict[str, Any] = {"time": time, **told}
-        if "event" in told:
+        moment: dict[str, Any] = {"time": time, **entries}
+        if "event" in entries:
             moment["transitions"] = [list(self._numbers[edge]) for edge in edges if edge in self._numbers]
         state = self.engine.state
         if self._states:
             moment |= self._changes(self._states[-1], state)
             moment["timers"] = _changed(self._running[-1], running)
-            before = self._kept[-1]
-            moment["state"] |= {name: value for name, value in kept.items() if value != before[name]}
+            before = self._stored[-1]
+            moment["state"] |= {name: value for name, value in stored.items() if value != before[name]}
         else:
-            moment |= self._whole(running, kept)
+            moment |= self._whole(running, stored)
         self.moments.append(moment)
         self._states.append(state)
         self._running.append(dict(running))
-        self._kept.append(kept)
+        self._stored.append(stored)
         if self._most is not None and len(self.moments) > self._most:
             self._forget(len(self.moments) // 2)
 
     @property
     def _kept_last(self) -> Values:
         """Variables that only the node stores, at the last moment."""
-        return self._kept[-1] if self._kept else self._node.initial
+        return self._stored[-1] if self._stored else self._node.initial
 
-    def _add_told(self, time: float, running: Mapping[str, int], told: Told) -> None:
+    def _add_told(self, time: float, running: Mapping[str, int], report: ReportedMoment) -> None:
         """Add a moment that a node has reported."""
-        said = (
+        entries = (
             {"words": "what the node says"}
-            if told.event is None
-            else {"event": told.event, "words": self.said(told.event)}
+            if report.event is None
+            else {"event": report.event, "words": self.describe_event(report.event)}
         )
-        self._add(time, running, said, told.edges, self._node.told(self._kept_last, told.variables))
+        self._add(time, running, entries, report.edges, self._node.update(self._kept_last, report.variables))
 
     def _changes(self, before: State, now: State) -> dict[str, Any]:
         """Return the changes between two states; the engine must be in the second."""
@@ -139,7 +139,7 @@ class Moments:
         state = {}
         for cell, (name, element) in enumerate(now.layout.elements):
             if before.cells[cell] != now.cells[cell]:
-                state[name] = now.layout.domains[cell].shown(now.cells[cell])
+                state[name] = now.layout.domains[cell].external(now.cells[cell])
                 concerned |= dict.fromkeys(self._readers.get(element, ()))
         commands, enabled = {}, {}
         for event in self.events:
@@ -152,12 +152,12 @@ class Moments:
                 self._verdicts[event] = verdict
         return {"state": state, "commands": commands, "enabled": enabled}
 
-    def _whole(self, running: Mapping[str, int], kept: Values) -> dict[str, Any]:
+    def _whole(self, running: Mapping[str, int], stored: Values) -> dict[str, Any]:
         """Return the complete values of a moment in the engine's present state."""
         self._look()
         return {
             "whole": True,
-            "state": {**whole_state(self.engine), **kept},
+            "state": {**whole_state(self.engine), **stored},
             "commands": {event: self._verdicts[event] for event in self.events if event in self._commands},
             "enabled": {event: True for event, verdict in self._verdicts.items() if verdict is None},
             "timers": dict(running),
@@ -174,8 +174,8 @@ class Moments:
 
     def _cut(self, length: int) -> None:
         """Remove moments until `length` are left; the engine must be in the state of the last of them."""
-        kept = length - self.first
-        del self.moments[kept:], self._states[kept:], self._running[kept:], self._kept[kept:]
+        remaining = length - self.first
+        del self.moments[remaining:], self._states[remaining:], self._running[remaining:], self._stored[remaining:]
         self.cuts.append(length)
         self._look()
 
@@ -183,20 +183,20 @@ class Moments:
         """Drop the oldest moments, and give the new first one its complete values."""
         now = self.engine.state
         self.engine.state = self._states[number]
-        first = self.moments[number] | self._whole(self._running[number], self._kept[number])
+        first = self.moments[number] | self._whole(self._running[number], self._stored[number])
         self.engine.state = now
         self._look()
         self.moments[: number + 1] = [first]
-        del self._states[:number], self._running[:number], self._kept[:number]
+        del self._states[:number], self._running[:number], self._stored[:number]
         self.first += number
 
-    def said(self, event: str) -> str:
+    def describe_event(self, event: str) -> str:
         """Return an event in the words of the model."""
         return words(self.events[event]).replace("`", "")
 
     # Listeners and explanations
 
-    async def changed(self, cuts: int, length: int, status: str) -> None:
+    async def wait_for_change(self, cuts: int, length: int, status: str) -> None:
         """Wait until moments are added or removed, or the status changes, compared to the arguments."""
 
         def is_other() -> bool:
@@ -210,7 +210,7 @@ class Moments:
         async with self._changed:
             self._changed.notify_all()
 
-    def explained(self, number: int, event: str) -> dict[str, Any]:
+    def explain(self, number: int, event: str) -> dict[str, Any]:
         """Return the explanation of an event at a moment, in words.
 
         Raises ActionError if there is no such event.
@@ -222,15 +222,17 @@ class Moments:
         if key not in self._explained:
             if len(self._explained) == _MOST_EXPLAINED:
                 self._explained.clear()
-            codes = state_given(self._model, json.dumps({"state": dict(state)}))
-            told = explored(self._model, lambda system: explain(system, self.events[event], codes))
-            blocking = told.counterexample
+            codes = parse_state(self._model, json.dumps({"state": dict(state)}))
+            explanation = explore(self._model, lambda system: explain(system, self.events[event], codes))
+            blocking = explanation.counterexample
             self._explained[key] = {
-                "allowed": told.allowed,
-                "notes": [NEEDLESS] if told.needless else [note.text for note in (*told.plants, *told.requirements)],
+                "allowed": explanation.allowed,
+                "notes": [NEEDLESS]
+                if explanation.needless
+                else [note.text for note in (*explanation.plants, *explanation.requirements)],
                 "otherwise": "" if blocking is None else counterexample_in_words(blocking, self._model),
-                "changes": [note.text for note in told.changes],
-                "way": in_words(told.way, self._model) if told.way else "",
+                "changes": [note.text for note in explanation.changes],
+                "way": in_words(explanation.way, self._model) if explanation.way else "",
             }
         return self._explained[key]
 

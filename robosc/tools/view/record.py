@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     from random import Random
 
     from robosc.model import rosgraph
-    from robosc.run.simulation import Simulation, Step
+    from robosc.run.simulation import ScriptStep, Simulation
     from robosc.run.simulation.replay import Moment
-    from robosc.run.simulation.tracking import Told
+    from robosc.run.simulation.tracker import ReportedMoment
 
 #: Names of the actions on a run.
 ACTIONS = ("perform", "wait", "undo", "redo", "random", "restart", "continue")
@@ -39,9 +39,9 @@ class Record(Moments):
         self,
         simulation: Simulation,
         graph: rosgraph.RosGraph | None = None,
-        steps: Sequence[Step] | None = None,
+        steps: Sequence[ScriptStep] | None = None,
         seed: int = 0,
-        recorded: Iterable[tuple[float, Told]] | None = None,
+        recorded: Iterable[tuple[float, ReportedMoment]] | None = None,
     ) -> None:
         """Add the recorded reports of a node, with times in seconds, and then play the steps.
 
@@ -96,20 +96,20 @@ class Record(Moments):
         if self._replay.has_future:
             self._forward(1)
 
-    def _perform(self, event: str, inputs: object, data: object, kept: object) -> None:
+    def _perform(self, event: str, inputs: object, data: object, stored_data: object) -> None:
         """Let an event happen, with values of its inputs by name, or with data in the shape of the event log.
 
-        `kept` lists pairs: the path of fields to data that only the node stores, and that data.
+        `stored_data` lists pairs: the path of fields to data that only the node stores, and that data.
         """
         if isinstance(inputs, dict):
             known = {carried.name for carried in self.events[event].inputs}
             if set(inputs) != known:
                 raise ActionError(f"{event} has the inputs {', '.join(sorted(known)) or '(none)'}")
-            others = _others(kept)
+            others = _others(stored_data)
             beside = {} if self._graph is None else data_beside(self._graph, self.events[event])
             if others and set(others) != set(beside):
                 raise ActionError(f"`kept` of {event} has the fields {', '.join(map('.'.join, beside)) or '(none)'}")
-            data = self.simulation.data.shaped(event, inputs, others) if inputs or others else {}
+            data = self.simulation.data.shape(event, inputs, others) if inputs or others else {}
         if not isinstance(data, dict | None):
             raise ActionError("data is an object")
         self._replay.freely()
@@ -118,7 +118,7 @@ class Record(Moments):
             self._keep(moment)
         else:
             assert moment.by is not None
-            raise ActionError(f"{self.said(event)}: {self.simulation.reason(event, moment.by)}")
+            raise ActionError(f"{self.describe_event(event)}: {self.simulation.reason(event, moment.by)}")
 
     def _chosen(self, random: Random) -> tuple[str, dict[str, Any]] | None:
         """Return a random possible event with random data, including data that only the node stores."""
@@ -131,7 +131,7 @@ class Record(Moments):
         inputs = self.simulation.data.inputs(event, data)
         if not brings_data(self.events[event], data.get("reason")):
             return event, data
-        return event, self.simulation.data.shaped(event, inputs, others) if others else data
+        return event, self.simulation.data.shape(event, inputs, others) if others else data
 
     def _forward(self, number: int) -> None:
         for _ in range(number):
@@ -154,18 +154,18 @@ class Record(Moments):
     def _words(self, moment: Moment) -> str:
         if moment.event == REFUSE:
             return refusal_in_words(self.engine, moment.data["of"]).replace("`", "")
-        return "time passes" if moment.event == WAIT else self.said(moment.event)
+        return "time passes" if moment.event == WAIT else self.describe_event(moment.event)
 
     def _keep(self, moment: Moment | None) -> None:
-        told: dict[str, Any] = {}
+        entries: dict[str, Any] = {}
         if moment is not None:
-            told = {"event": moment.event, "data": dict(moment.data), "words": self._words(moment)}
+            entries = {"event": moment.event, "data": dict(moment.data), "words": self._words(moment)}
             if moment.by is not None:
-                told |= {"by": str(moment.by), "reason": self.simulation.reason(moment.event, moment.by)}
-        timers, kept = self._replay.timers, self._kept_last
+                entries |= {"by": str(moment.by), "reason": self.simulation.reason(moment.event, moment.by)}
+        timers, stored = self._replay.timers, self._kept_last
         if moment is not None and moment.happened:
-            kept = self._node.after(kept, moment.event, moment.data, moment.before)
-        self._add(timers.now / 1000, timers.running, told, () if moment is None else moment.edges, kept)
+            stored = self._node.after(stored, moment.event, moment.data, moment.before)
+        self._add(timers.now / 1000, timers.running, entries, () if moment is None else moment.edges, stored)
 
 
 def _any(kind: ex.Type, random: Random) -> bool | int | float | str:
@@ -179,13 +179,13 @@ def _any(kind: ex.Type, random: Random) -> bool | int | float | str:
     return random.randint(-1000, 1000) / 100
 
 
-def _others(kept: object) -> dict[tuple[str, ...], Any]:
-    """Return data by its path of fields. Raises ActionError if `kept` is malformed."""
-    found: dict[tuple[str, ...], Any] = {}
-    for pair in kept if isinstance(kept, list) else [None]:
+def _others(pairs: object) -> dict[tuple[str, ...], Any]:
+    """Return data by its path of fields. Raises ActionError if `pairs` is malformed."""
+    by_path: dict[tuple[str, ...], Any] = {}
+    for pair in pairs if isinstance(pairs, list) else [None]:
         match pair:
             case [list(path), bool() | int() | float() | str() as value] if all(isinstance(name, str) for name in path):
-                found[tuple(path)] = value
+                by_path[tuple(path)] = value
             case _:
                 raise ActionError("`kept` is a list of pairs of fields and data")
-    return found
+    return by_path

@@ -19,13 +19,13 @@ class Relay:
         self._loop = asyncio.get_running_loop()
         self._tasks: set[asyncio.Task[None]] = set()
 
-    def defined(self, text: str) -> None:
+    def receive_definition(self, text: str) -> None:
         """Pass on a text from `~/definition`."""
-        self._call(lambda: self._live.defined(text))
+        self._call(lambda: self._live.receive_definition(text))
 
-    def told(self, text: str) -> None:
+    def receive_report(self, text: str) -> None:
         """Pass on a text from `~/state`."""
-        self._call(lambda: self._live.told(text))
+        self._call(lambda: self._live.receive_report(text))
 
     def heard(self, publishers: int) -> None:
         """Pass on the number of nodes that publish their states."""

@@ -73,10 +73,10 @@ class _Answers:
 
     def _robot(self, request: Request) -> int:
         """Return the number of the requested robot. Raises ActionError if there is none."""
-        asked = request.query_params.get("robot", "0")
-        if asked not in map(str, range(len(self._records))):
+        number = request.query_params.get("robot", "0")
+        if number not in map(str, range(len(self._records))):
             raise ActionError("unknown robot")
-        return int(asked)
+        return int(number)
 
     async def file(self, request: Request) -> Response:
         """Return a file of the page."""
@@ -95,7 +95,9 @@ class _Answers:
     async def moments(self, request: Request) -> Response:
         """Stream all moments so far, and then each new one."""
         try:
-            return StreamingResponse(told(self._records[self._robot(request)]), media_type="text/event-stream")
+            return StreamingResponse(
+                stream_moments(self._records[self._robot(request)]), media_type="text/event-stream"
+            )
         except ActionError as error:
             return _refused(error, 404)
 
@@ -104,7 +106,7 @@ class _Answers:
         try:
             moment, event = int(request.query_params["moment"]), request.query_params["event"]
             record = self._records[self._robot(request)]
-            return JSONResponse(await run_in_threadpool(record.explained, moment, event))
+            return JSONResponse(await run_in_threadpool(record.explain, moment, event))
         except (ValueError, KeyError, ActionError) as error:
             return _refused(error, 400)
 
@@ -130,20 +132,20 @@ class _Answers:
         return JSONResponse({"moment": record.length - 1})
 
 
-async def told(record: Moments) -> AsyncIterator[str]:
+async def stream_moments(record: Moments) -> AsyncIterator[str]:
     """Yield moments as server-sent events `{from, moments, status}`.
 
     They replace earlier moments from the number `from` on. If `from` skips numbers, the moments in between are no
     longer stored.
     """
-    cuts, told, status = len(record.cuts), 0, ""
+    cuts, position, status = len(record.cuts), 0, ""
     while True:
-        await record.changed(cuts, told, status)
-        told = max(record.first, min(told, *record.cuts[cuts:], record.length))
+        await record.wait_for_change(cuts, position, status)
+        position = max(record.first, min(position, *record.cuts[cuts:], record.length))
         cuts, status = len(record.cuts), record.status
-        portion = record.moments[told - record.first :][:_PORTION]
-        yield f"data: {json.dumps({'from': told, 'moments': portion, 'status': status})}\n\n"
-        told += len(portion)
+        portion = record.moments[position - record.first :][:_PORTION]
+        yield f"data: {json.dumps({'from': position, 'moments': portion, 'status': status})}\n\n"
+        position += len(portion)
 
 
 class _Guarded:
@@ -199,5 +201,5 @@ def _refused(error: Exception, status: int) -> Response:
     return PlainTextResponse(str(error).encode(errors="replace"), status)
 
 
-def _same(given: str, token: str) -> bool:
-    return compare_digest(given.encode(), token.encode())
+def _same(candidate: str, token: str) -> bool:
+    return compare_digest(candidate.encode(), token.encode())

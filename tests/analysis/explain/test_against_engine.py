@@ -10,8 +10,8 @@ from hypothesis import event, given, settings
 from hypothesis import strategies as st
 
 from robosc.analysis.explain.answers import Explanation, Possibility, Reach
-from robosc.analysis.explain.explaining import emptiness, explain, explored, possibility
-from robosc.analysis.explain.names import state_given
+from robosc.analysis.explain.explanations import emptiness, explain, explore, possibility
+from robosc.analysis.explain.names import parse_state
 from robosc.analysis.paths import TraceStep
 from robosc.analysis.supervise import diagnose
 from robosc.analysis.system import SynthesizedSystem, whole_state
@@ -124,7 +124,7 @@ def test_an_event_in_a_state_is_what_the_engine_says(model):
         for state in some_states(engine):
             engine.state = state
             told = told_state(engine)
-            codes = state_given(model, told) if told else {}
+            codes = parse_state(model, told) if told else {}
             for asked in engine.roles.events:
                 engine.state = state
                 told = explain(system, asked, codes)
@@ -135,7 +135,7 @@ def test_an_event_in_a_state_is_what_the_engine_says(model):
                 event(f"by {told.by}")
                 check(engine, state, told)
 
-    explored(model, look)
+    explore(model, look)
 
 
 def check(engine: Engine, state, told: Explanation) -> None:
@@ -152,7 +152,7 @@ def check(engine: Engine, state, told: Explanation) -> None:
     assert bool(told.requirements) >= (told.by is Blocked.REQUIREMENT)
     assert all(note.details for note in told.requirements)
     engine.state = state
-    assert [note.element for note in told.requirements] == engine.failing(name)
+    assert [note.element for note in told.requirements] == engine.failing_requirements(name)
     helpful = set() if told.allowed else making_it_possible(engine, state, name)
     assert {event_name(note.element.event) for note in told.changes} == helpful
     for note in told.changes:
@@ -183,12 +183,12 @@ def test_states_out_of_the_supervisors_reach_are_told_apart(model, requirement, 
     )
     state = data.draw(st.sampled_from(outside))
     chosen = data.draw(st.sampled_from(engine.roles.events))
-    codes = state_given(model, json.dumps({"state": Replay(model, []).names(state)}))
+    codes = parse_state(model, json.dumps({"state": Replay(model, []).names(state)}))
 
     def look(system: SynthesizedSystem) -> Explanation:
         return explain(system, chosen, codes)
 
-    told = explored(model, look)
+    told = explore(model, look)
     assert told.situation.reach is Reach.UNSUPERVISED
     assert not told.allowed
     assert told.way is None
@@ -237,7 +237,7 @@ def test_what_never_happens(model):
                 check_conflict(oracle, asked, told)
                 check_loosenings(model, told.loosenings, partial(possible, event_name(asked)))
 
-    explored(model, look)
+    explore(model, look)
 
 
 def check_beyond(oracle: Oracle, chosen: sct.Event, beyond: Explanation | None) -> None:
@@ -303,10 +303,10 @@ def changes_something(model, event):
 @SOME_MODELS
 def test_why_there_is_no_supervisor(model):
     if synthesize(model).supervisor is not None:
-        assert explored(model, emptiness) is None
+        assert explore(model, emptiness) is None
         add_pit(model)
     synthesis = diagnose(model)
-    told = explored(model, emptiness)
+    told = explore(model, emptiness)
     assert told.reason == synthesis.reason
     assert [note.element for note in told.stuck] == [
         plant.locations[told.reason.codes[plant]] for plant in told.reason.unmarked
@@ -348,7 +348,7 @@ def test_why_there_is_no_supervisor(model):
 def test_a_state_reads_as_it_is_written(model):
     engine = supervised(model)
     told = told_state(engine)
-    codes = state_given(model, told) if told else {}
+    codes = parse_state(model, told) if told else {}
     whole = {variable: codes.get(variable, 0) for plant in model.plants for variable in (plant, *plant.variables)}
     shown = whole_state(model, whole)
     assert {name: shown[name] for name in engine.state} == dict(engine.state)

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 import robosc
-from robosc.analysis.explain.explaining import explored
+from robosc.analysis.explain.explanations import explore
 from robosc.analysis.system import SynthesizedSystem
 from robosc.m2m import robosc_to_sct
 from robosc.model import expression as ex
@@ -28,7 +28,7 @@ def test_without_each_requirement(path: Path) -> None:
     written = list({requirement.source: requirement for requirement in written}.values())
 
     def look(system: SynthesizedSystem) -> list[tuple[int, int]]:
-        texts = system.stated()
+        texts = system.group_requirements()
         assert len(texts) == len(written)
         counts = []
         for text in texts:
@@ -37,7 +37,7 @@ def test_without_each_requirement(path: Path) -> None:
             counts.append((system.encoding.count(other.controlled), states_without(robot, left_out)))
         return counts
 
-    for left, expected in explored(robosc_to_sct.transform(robot)[0], look):
+    for left, expected in explore(robosc_to_sct.transform(robot)[0], look):
         assert left == expected
 
 

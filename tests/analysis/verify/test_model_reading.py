@@ -20,7 +20,7 @@ from robosc.model import robosc as rsc
 from robosc.model import sct
 from robosc.model.semantics.edges import edges_of
 from robosc.model.semantics.roles import event_name
-from robosc.model.semantics.walks import copied, parts
+from robosc.model.semantics.walks import copy_tree, parts
 from tests.fuzz.mutants import LIBRARIES, sources
 from tests.random_robots import random_robot
 from tests.random_second_edition import second_edition_robot
@@ -237,7 +237,7 @@ def all_is_read_as_any(model: sct.SupervisoryControlModel) -> None:
     assert isinstance(needed.condition, ex.Conjunction)
     every = needed.condition.left
     assert isinstance(every, ex.Conjunction)
-    needed.condition.left = ex.Disjunction(left=copied(every.left), right=copied(every.right))
+    needed.condition.left = ex.Disjunction(left=copy_tree(every.left), right=copy_tree(every.right))
 
 
 def an_instance_is_read_twice(model: sct.SupervisoryControlModel) -> None:
@@ -297,7 +297,7 @@ def a_later_transition_is_tried_first(model: sct.SupervisoryControlModel) -> Non
     first, second, *_ = edges(model, "component_Front.clear", "message_Front_seen.u_response")
     assert isinstance(second.guard, ex.Conjunction)
     later = second.guard.right
-    first.guard = ex.Conjunction(left=copied(first.guard), right=ex.Negation(operand=copied(later)))
+    first.guard = ex.Conjunction(left=copy_tree(first.guard), right=ex.Negation(operand=copy_tree(later)))
     second.guard = later
 
 

@@ -6,10 +6,10 @@ from unittest.mock import patch
 import pytest
 
 from robosc.analysis.verify import Outcome, Verdict, verify_system
-from robosc.analysis.verify.loop import ControlLoop
+from robosc.analysis.verify.loop import LoopModel
 from robosc.model import sct
 from robosc.synthesis import acceleration, synthesize
-from robosc.synthesis.relation import Step
+from robosc.synthesis.relation import SymbolicStep
 from tests.sct_models import disables, edge, model, needs, plant
 
 
@@ -461,8 +461,8 @@ def counter() -> Any:
 @pytest.mark.parametrize("name", ["confluence", "non-blocking in the control loop"])
 def test_a_wide_integer_that_the_control_loop_counts(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     images = []
-    image = Step.image
-    monkeypatch.setattr(Step, "image", lambda step, states: images.append(step) or image(step, states))
+    image = SymbolicStep.image
+    monkeypatch.setattr(SymbolicStep, "image", lambda step, states: images.append(step) or image(step, states))
     found = verdict(model([counter()], guards={}), name)
     assert found.outcome is Outcome.PROVED
     assert found.evidence.startswith("131,069 states")
@@ -471,13 +471,13 @@ def test_a_wide_integer_that_the_control_loop_counts(name: str, monkeypatch: pyt
 
 @pytest.mark.parametrize("name", ["confluence", "non-blocking in the control loop"])
 def test_a_wide_integer_that_takes_too_many_turns(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(ControlLoop, "states", property(endless))
+    monkeypatch.setattr(LoopModel, "states", property(endless))
     found = verdict(model([counter()], guards={}), name)
     assert (found.outcome, found.evidence) == (Outcome.SKIPPED, "")
     assert found.explanation.startswith("the range of level, 65536 values, is too wide")
 
 
-def endless(loop: ControlLoop) -> None:
+def endless(loop: LoopModel) -> None:
     """Emulate acceleration that gives up, as when its steps get large."""
     with (
         patch.object(acceleration, "_HOPELESS", 64),

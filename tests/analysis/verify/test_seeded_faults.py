@@ -147,7 +147,7 @@ TIMES: dict[str, Fault] = {
         "the time `after patience s without Desk.call` of `Base` (line 59) lasts 2,000 ms by the text, and 1,000 ms in",
     ),
     "the last of times that are up together comes first": (
-        *(_LOWER, "model.timers.append(made)", "model.timers.insert(0, made)", "Pairs"),
+        *(_LOWER, "model.timers.append(timer)", "model.timers.insert(0, timer)", "Pairs"),
         "the time `after 700 ms without Second.heard` of `First` (line 11) comes before the time `after 1 s` of",
     ),
 }
@@ -267,7 +267,7 @@ MODEL: dict[str, Fault] = {
         "after request to `Base.go`, the count of requirement automaton 2 stays as it was by the text (line 83), and",
     ),
     "alternatives do not deny those before them": (
-        *(_AUTOMATA, "before += map(copied, own)", "pass", "Courier"),
+        *(_AUTOMATA, "before += map(copy_tree, own)", "pass", "Courier"),
         "several edges with different ends are possible in the plants for response from `Desk.call`",
     ),
     "every requirement state is marked": (

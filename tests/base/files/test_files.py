@@ -63,10 +63,10 @@ def test_a_regular_file_that_waits_for_more_is_not_waited_for() -> None:
 def test_inputs_are_noted(tmp_path: Path) -> None:
     for name in ("input", "other"):
         (tmp_path / name).touch()
-    with files.noting():
+    with files.record_inputs():
         files.read(tmp_path / "input")
         files.read(tmp_path / "other", is_input=False)
         (tmp_path / "again").hardlink_to(tmp_path / "input")
-        assert files.input_named((tmp_path / "again").stat()) == str(tmp_path / "input")
-        assert files.input_named((tmp_path / "other").stat()) is None
-    assert files.input_named((tmp_path / "input").stat()) is None
+        assert files.input_name((tmp_path / "again").stat()) == str(tmp_path / "input")
+        assert files.input_name((tmp_path / "other").stat()) is None
+    assert files.input_name((tmp_path / "input").stat()) is None

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from robosc.analysis.explain.names import NamingError, state_given
+from robosc.analysis.explain.names import NamingError, parse_state
 from robosc.base.diagnostics import ModelError, Span
 from robosc.base.diagnostics.visible import HIDDEN
 from robosc.base.files.json_reading import JsonError, json_value
@@ -101,7 +101,7 @@ def test_the_place_in_a_configuration(tmp_path: Path) -> None:
 def test_states_say_it(text: str, why: str) -> None:
     given = text if text.startswith("{") else f'{{"state": {text}'
     with pytest.raises(NamingError, match=why):
-        state_given(sct.SupervisoryControlModel(name="M"), given)
+        parse_state(sct.SupervisoryControlModel(name="M"), given)
 
 
 LINE = {"time": 1.0, "direction": "in", "event": "e"}

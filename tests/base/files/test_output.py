@@ -287,7 +287,7 @@ def test_inputs_are_not_written_over(tmp_path: Path) -> None:
     (tmp_path / "same.rscd").hardlink_to(tmp_path / "model.rscd")
     (tmp_path / "link.rscd").symlink_to(tmp_path / "model.rscd")
     before = tree(tmp_path)
-    with files.noting():
+    with files.record_inputs():
         files.read(tmp_path / "model.rscd")
         for name in ("model.rscd", "same.rscd"):
             with pytest.raises(OutputError, match=f"{name} was read by this call"):

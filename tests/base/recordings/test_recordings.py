@@ -21,7 +21,7 @@ from rosbags.typesys import Stores, get_typestore
 import robosc
 from robosc.base.recordings import RecordedText, RecordingError, bounds, is_recording, recorded_texts
 from robosc.run.simulation import Simulation
-from robosc.run.simulation.played import PlayError, recorded_moments
+from robosc.run.simulation.sources import PlayError, recorded_moments
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

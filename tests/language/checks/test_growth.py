@@ -35,14 +35,14 @@ TEXTS = {
 @pytest.mark.parametrize("text", TEXTS.values(), ids=TEXTS)
 def test_what_would_be_too_large_is_never_written_out(monkeypatch: pytest.MonkeyPatch, text: str) -> None:
     steps = 0
-    copied = expansion.copied
+    copied = expansion.copy_tree
 
     def counted(*arguments: object) -> object:
         nonlocal steps
         steps += 1
         return copied(*arguments)
 
-    monkeypatch.setattr(expansion, "copied", counted)
+    monkeypatch.setattr(expansion, "copy_tree", counted)
     reading = read("r.rscd", documents=Documents({"r.rscd": text}))
     findings = [*reading.findings, *check(reading.base, reading.findings)]
     assert [finding.message for finding in findings] == [TOO_LARGE]

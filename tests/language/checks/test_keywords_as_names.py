@@ -5,7 +5,7 @@ import re
 import pytest
 
 from robosc.language.grammar import first_words, pattern
-from tests.language.checks.test_fixing import checked
+from tests.language.checks.test_automatic_edits import checked
 
 WORDS = re.search(r"\(\?:([a-z|]+)\)", pattern("UnreservedName"))[1].split("|")
 BEGINNING = first_words("Definition", "ComponentDefinition", "AutomatonDefinition", "EnumRule")

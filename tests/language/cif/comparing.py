@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from robosc.language.cif import Reading, read
+from robosc.language.cif import CifReading, read
 from robosc.language.text import Documents
 from robosc.synthesis import count, synthesize
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from tests.language.cif.random_specifications import Specification
 
 
-def reading_of(specification: Specification) -> Reading:
+def reading_of(specification: Specification) -> CifReading:
     """Read a specification from all of its files."""
     files = {str(Path(name).resolve()): text for name, text in specification.files.items()}
     return read(Path("random.cif").resolve(), Documents(files))

@@ -10,7 +10,7 @@ from robosc.m2t import supervisor
 from robosc.m2t.models import Models
 from robosc.model import sct
 from robosc.model.semantics.start import first_state
-from robosc.synthesis import encoded
+from robosc.synthesis import use_encoding
 from robosc.synthesis.encoding import Encoding, smallest
 from tests.language.cif.comparing import agrees, reading_of
 from tests.language.cif.random_specifications import Specification
@@ -49,7 +49,7 @@ def test_what_verify_says_of_them_and_where_they_start() -> None:
             good = encoding.initial & encoding.holds(model.supervisor.initial) & encoding.state(codes)  # noqa: B023
             return bool(good.satisfiable())
 
-        assert encoded(model, is_initial)
+        assert use_encoding(model, is_initial)
         engine = Engine(model)
         for plant in model.plants:
             assert engine.location(plant) == start[plant]

@@ -13,7 +13,7 @@ import robosc
 from robosc.analysis.supervise import supervise
 from robosc.base.diagnostics import ModelError
 from robosc.engine import Engine
-from robosc.m2m.remembering import remembered
+from robosc.m2m.memo import cache_transformations
 from robosc.m2m.sct_to_engine import transform
 from robosc.model import engine, sct, xmi
 from robosc.model import expression as ex
@@ -417,7 +417,7 @@ def _follow(made: sct.SupervisoryControlModel, random: Random) -> int:
         for event, name in names.items():
             reason = executed.blocked_by(name)
             assert (None if reason is None else reason.value) == oracle.blocked(made, event, state)
-            assert executed.failing(name) == oracle.failing(made, event, state)
+            assert executed.failing_requirements(name) == oracle.failing(made, event, state)
             if event.kind in (sct.EventKind.cancel, sct.EventKind.trigger):
                 assert _without_edge(executed, event) == oracle.without_edge(made, event, state)
         possible = [event for event in events if oracle.blocked(made, event, state) is None]
@@ -470,9 +470,9 @@ def test_engine_models_can_be_saved_and_are_the_same_each_time(made: sct.Supervi
 
 def test_a_model_is_transformed_once_while_it_is_remembered() -> None:
     made = machine()
-    with remembered():
+    with cache_transformations():
         first = transform(made)
-        with remembered():
+        with cache_transformations():
             assert transform(made) is first
         assert transform(made) is first
     assert transform(made) is not transform(made)

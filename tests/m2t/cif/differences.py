@@ -10,7 +10,7 @@ from robosc.model.reflection import contents, tree
 from robosc.model.semantics.edges import edges_from, edges_of
 from robosc.model.semantics.evaluation import Program, saturate
 from robosc.model.semantics.printing import conjunction
-from robosc.model.semantics.walks import copied
+from robosc.model.semantics.walks import copy_tree
 
 #: The number of valuations for comparing two expressions.
 _MOST = 400
@@ -234,4 +234,4 @@ def _guard(edge: sct.Edge) -> ex.Expression | None:
                 if literal not in possible:
                     read = sct.InputReference(input=carried)
                     excluded.append(ex.Inequation(left=read, right=ex.EnumerationLiteralReference(literal=literal)))
-    return conjunction([*excluded, *([copied(edge.guard)] if edge.guard is not None else [])])
+    return conjunction([*excluded, *([copy_tree(edge.guard)] if edge.guard is not None else [])])

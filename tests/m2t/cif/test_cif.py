@@ -20,7 +20,7 @@ from robosc.model import expression as ex
 from robosc.model import sct
 from robosc.model.places import Place
 from robosc.model.reflection import tree
-from robosc.model.semantics.walks import copied
+from robosc.model.semantics.walks import copy_tree
 from robosc.synthesis import synthesize
 from tests.fuzz.valid import named_like
 from tests.m2t.cif.differences import differences
@@ -315,7 +315,7 @@ def test_what_cannot_be_said_in_a_guard_stands_at_its_event() -> None:
     )
     given.plants[0].events[0].source = Place.parse("robot.rscd:7:5-8:9")
     given.requirements[0].source = Place.parse("robot.rscd:9:5-9:9")
-    condition = copied(given.requirements[0].condition)
+    condition = copy_tree(given.requirements[0].condition)
     guard = sct.EventGuard(event=given.plants[0].events[0], requirement=condition)
     given.supervisor = sct.Supervisor(guards=[guard])
     found = cif.preconditions(Models(given), Configuration())
@@ -496,7 +496,7 @@ def test_long_lines_are_folded_between_words() -> None:
     words = " and ".join(["p.b"] * 40)
     given = expression(" and ".join(["b"] * 40), b="bool")
     event = given.plants[0].events[0]
-    condition = copied(given.plants[0].locations[0].edges[0].guard)
+    condition = copy_tree(given.plants[0].locations[0].edges[0].guard)
     kind = sct.RequirementKind.needs
     given.requirements.append(sct.Requirement(event=event, kind=kind, condition=condition, text=f'"{words}\\"'))
     text = generated(given)["robot.cif"]

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import robosc
 from robosc.m2t.ros.names import CppNames
-from robosc.m2t.ros.node import Node
+from robosc.m2t.ros.node import GeneratedNode
 from robosc.model import expression as ex
 from robosc.model import rosgraph
 
@@ -25,7 +25,7 @@ def test_what_a_trigger_changes_is_done_after_its_data_is_made() -> None:
             assignments=[rosgraph.NodeAssignment(variable=variable, value=ex.IntegerLiteral(value=7))],
         )
     )
-    publishers = Node(graph, robosc.to_engine(graph.model)).publishers
+    publishers = GeneratedNode(graph, robosc.to_engine(graph.model)).publishers
     message = next(message for topic in publishers for message in topic.messages if message.word == "sum")
     assert message.reaction is not None
     (reaction,) = message.reaction.reactions

@@ -13,8 +13,8 @@ from robosc.model.semantics.naming import (
     below_layer,
     controller_name,
     escape,
+    escape_keyword,
     snake_case,
-    written,
 )
 
 KEYWORDS = [*kwlist, "if__", "_", "x_y"]
@@ -80,8 +80,8 @@ def test_the_keywords_are_the_grammars() -> None:
 
 
 def test_a_name_is_written_so_that_it_is_no_keyword() -> None:
-    assert written("state") == "^state"
-    assert written("states") == "states"
+    assert escape_keyword("state") == "^state"
+    assert escape_keyword("states") == "states"
 
 
 def test_names_for_the_controller_are_below_the_layers_own() -> None:

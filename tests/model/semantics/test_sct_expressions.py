@@ -5,7 +5,7 @@ from hypothesis import given
 
 from robosc.model.reflection import tree
 from robosc.model.semantics.printing import SctPrinter
-from robosc.model.semantics.walks import copied
+from robosc.model.semantics.walks import copy_tree
 from tests.random_sct import sct_models
 from tests.sct_models import edge, model, needs, plant
 
@@ -47,7 +47,7 @@ def test_what_no_sct_model_holds_has_no_text():
 def test_a_copy_reads_the_same_and_shares_nothing(made):
     text = SctPrinter()
     for requirement in made.requirements:
-        copy = copied(requirement.condition)
+        copy = copy_tree(requirement.condition)
         assert text(copy) == text(requirement.condition)
         assert not {id(element) for _, element in tree(copy)} & {
             id(element) for _, element in tree(requirement.condition)

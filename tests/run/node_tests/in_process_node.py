@@ -14,7 +14,7 @@ from robosc.run.node_tests.trace_player import START, Port, cancelled
 from robosc.run.runtime.core.controller import Controller
 from robosc.run.runtime.core.event_log import EventLog
 from robosc.run.runtime.core.event_loop import EventLoop
-from robosc.run.runtime.core.port import CancelAnswer, Outcome
+from robosc.run.runtime.core.port import CancelAnswer, GoalOutcome
 from robosc.run.runtime.core.settings import Settings
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from robosc.model import rosgraph, sct
     from robosc.run.runtime.core.port import CallHandlers, GoalHandlers
 
-_OUTCOMES = {"succeeded": Outcome.SUCCEEDED, "aborted": Outcome.ABORTED, "canceled": Outcome.CANCELED}
+_OUTCOMES = {"succeeded": GoalOutcome.SUCCEEDED, "aborted": GoalOutcome.ABORTED, "canceled": GoalOutcome.CANCELED}
 
 
 class _Goal(RunningGoal):

@@ -13,7 +13,7 @@ from robosc.model import sct
 from robosc.model.semantics.roles import event_name
 from robosc.run.node_tests.coverage import goals
 from robosc.run.node_tests.guide import Guide
-from robosc.synthesis import encoded
+from robosc.synthesis import use_encoding
 
 if TYPE_CHECKING:
     from robosc.synthesis.encoding import Encoding
@@ -38,6 +38,6 @@ def test_every_condition_of_the_sprayer_can_be_seen() -> None:
             event_name(goal.of) for goal, states in alone.items() if not (states & ~cancel).satisfiable()
         ]
 
-    count, unseen = encoded(model, ask)
+    count, unseen = use_encoding(model, ask)
     assert count > 7
     assert unseen == []

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from robosc.run.runtime.core.port import CancelAnswer, Outcome
+from robosc.run.runtime.core.port import CancelAnswer, GoalOutcome
 from robosc.run.runtime.ros2 import answers
 
 OWN, OTHER = bytes(range(16)), bytes(16)
@@ -20,9 +20,9 @@ def response(code: int, *goals: bytes) -> SimpleNamespace:
 
 
 def test_any_other_status_leaves_the_end_open() -> None:
-    ends = {4: Outcome.SUCCEEDED, 5: Outcome.CANCELED, 6: Outcome.ABORTED}
+    ends = {4: GoalOutcome.SUCCEEDED, 5: GoalOutcome.CANCELED, 6: GoalOutcome.ABORTED}
     for status in range(-128, 128):
-        assert answers.outcome(status) is ends.get(status, Outcome.LOST)
+        assert answers.outcome(status) is ends.get(status, GoalOutcome.LOST)
 
 
 @pytest.mark.parametrize(

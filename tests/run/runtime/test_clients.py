@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from robosc.run.runtime.core.cancel_requests import FAREWELL, GoalTimes
 from robosc.run.runtime.core.clients import ActionClient, Answers, ServiceClient
 from robosc.run.runtime.core.event_loop import EventLoop
-from robosc.run.runtime.core.port import CancelAnswer, Failure, Outcome
+from robosc.run.runtime.core.port import CancelAnswer, Failure, GoalOutcome
 from tests.run.runtime.fake import FakePort
 
 TIMEOUT, RETRY = 5.0, 1.0
@@ -150,7 +150,7 @@ def accepted(bench: Bench) -> Any:
     return goal
 
 
-def end(bench: Bench, goal: Any, outcome: Outcome, result: Any = None, text: str = "") -> None:
+def end(bench: Bench, goal: Any, outcome: GoalOutcome, result: Any = None, text: str = "") -> None:
     bench.do(lambda: goal.handlers.ended(outcome, result, text))
 
 
@@ -163,7 +163,7 @@ def test_a_goal_succeeds_after_any_time() -> None:
     goal = accepted(bench)
     bench.wait(1000)
     bench.do(lambda: goal.handlers.feedback("half"))
-    end(bench, goal, Outcome.SUCCEEDED, "there")
+    end(bench, goal, GoalOutcome.SUCCEEDED, "there")
     bench.do(lambda: goal.handlers.feedback("late"))
     assert bench.told == [("feedback", "half"), ("response", "there")]
     assert not bench.client.busy
@@ -172,12 +172,12 @@ def test_a_goal_succeeds_after_any_time() -> None:
 @pytest.mark.parametrize(
     ("outcome", "told"),
     [
-        (Outcome.ABORTED, ("error", Failure.ABORTED, "aborted: stuck", "where")),
-        (Outcome.CANCELED, ("canceled", Failure.CANCELED, "canceled by someone else: stuck", "where")),
-        (Outcome.LOST, ("error", Failure.LOST, "the server has lost the goal: stuck", None)),
+        (GoalOutcome.ABORTED, ("error", Failure.ABORTED, "aborted: stuck", "where")),
+        (GoalOutcome.CANCELED, ("canceled", Failure.CANCELED, "canceled by someone else: stuck", "where")),
+        (GoalOutcome.LOST, ("error", Failure.LOST, "the server has lost the goal: stuck", None)),
     ],
 )
-def test_a_goal_that_does_not_succeed_has_a_reason_and_its_result(outcome: Outcome, told: tuple[Any, ...]) -> None:
+def test_a_goal_that_does_not_succeed_has_a_reason_and_its_result(outcome: GoalOutcome, told: tuple[Any, ...]) -> None:
     bench = Bench(ActionClient)
     goal = accepted(bench)
     end(bench, goal, outcome, "where", "stuck")
@@ -205,13 +205,13 @@ def test_no_server_a_rejection_and_a_server_that_goes_are_errors() -> None:
 @pytest.mark.parametrize(
     ("outcome", "told"),
     [
-        (Outcome.CANCELED, ("canceled", Failure.TIMEOUT, "accepted too late, then canceled", "where")),
-        (Outcome.ABORTED, ("error", Failure.TIMEOUT, "accepted too late, then aborted", "where")),
-        (Outcome.SUCCEEDED, ("response", "where")),
+        (GoalOutcome.CANCELED, ("canceled", Failure.TIMEOUT, "accepted too late, then canceled", "where")),
+        (GoalOutcome.ABORTED, ("error", Failure.TIMEOUT, "accepted too late, then aborted", "where")),
+        (GoalOutcome.SUCCEEDED, ("response", "where")),
     ],
 )
 def test_a_goal_accepted_too_late_is_canceled_and_its_end_is_told_when_it_has_ended(
-    outcome: Outcome, told: tuple[Any, ...]
+    outcome: GoalOutcome, told: tuple[Any, ...]
 ) -> None:
     bench = Bench(ActionClient)
     bench.do(lambda: bench.client.start("goal"))
@@ -282,16 +282,16 @@ def test_time_for_a_server_and_for_its_acceptance_is_one() -> None:
 @pytest.mark.parametrize(
     ("outcome", "told"),
     [
-        (Outcome.SUCCEEDED, ("response", "where")),
+        (GoalOutcome.SUCCEEDED, ("response", "where")),
         (
-            Outcome.CANCELED,
+            GoalOutcome.CANCELED,
             ("canceled", Failure.CANCELED, "canceled by the controller itself, an error to the model", "where"),
         ),
-        (Outcome.ABORTED, ("error", Failure.ABORTED, "aborted", "where")),
+        (GoalOutcome.ABORTED, ("error", Failure.ABORTED, "aborted", "where")),
     ],
 )
 def test_a_cancel_waits_for_acceptance_and_nothing_that_the_goal_still_says_is_dropped(
-    outcome: Outcome, told: tuple[Any, ...]
+    outcome: GoalOutcome, told: tuple[Any, ...]
 ) -> None:
     bench = Bench(ActionClient)
     bench.do(lambda: bench.client.start("goal"))
@@ -372,7 +372,7 @@ def test_an_unknown_goal_is_lost_and_a_terminated_one_when_its_result_does_not_c
     goal = accepted(bench)
     bench.do(bench.client.cancel)
     answer(bench, goal, CancelAnswer.TERMINATED)
-    end(bench, goal, Outcome.SUCCEEDED, "there")
+    end(bench, goal, GoalOutcome.SUCCEEDED, "there")
     assert bench.told[2:] == [("response", "there")]
 
 
@@ -384,7 +384,7 @@ def test_a_goal_that_someone_else_has_canceled_is_terminated_to_the_server_and_g
     answer(bench, goal, CancelAnswer.TERMINATED)
     bench.wait(60)
     assert (bench.told, bench.client.busy, goal.cancels) == ([], True, 1)
-    end(bench, goal, Outcome.CANCELED, "there")
+    end(bench, goal, GoalOutcome.CANCELED, "there")
     assert [kind for kind, *_ in bench.told] == ["canceled"]
 
 
@@ -484,7 +484,7 @@ def play(bench: Bench, goal: Any, step: str, number: int) -> None:
         case "stop":
             goal.canceling = bool(number % 2)
         case "ended":
-            end(bench, goal, list(Outcome)[number % 4])
+            end(bench, goal, list(GoalOutcome)[number % 4])
         case _:
             bench.do(getattr(goal.handlers, step))
 

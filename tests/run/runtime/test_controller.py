@@ -15,7 +15,7 @@ from jsonschema import Draft202012Validator
 
 from robosc.base.files.resources import locate
 from robosc.language.configuration import NO_STOP, NO_STOP_ON_SILENCE, Configuration
-from robosc.run.runtime.core.port import CancelAnswer, Endpoint, Outcome
+from robosc.run.runtime.core.port import CancelAnswer, Endpoint, GoalOutcome
 from tests.run.runtime.fake import Record, World
 from tests.searching import examples
 
@@ -222,7 +222,7 @@ def test_stopping_cancels_goals_then_sends_the_last_messages_and_nothing_more(ma
     assert world.port.goals[0].cancels == 1
     assert len(world.port.sent) == count + 1
     assert world.controller.busy
-    world.port.goals[0].handlers.ended(Outcome.CANCELED, None, "")
+    world.port.goals[0].handlers.ended(GoalOutcome.CANCELED, None, "")
     world.wait(2)
     assert not world.controller.busy
     assert len(world.port.sent) == count + 1
@@ -288,7 +288,7 @@ def test_a_refused_goal_is_canceling_and_the_diagnostics_warn(make: Callable[...
     goal.handlers.feedback(Record(distance_remaining=1.5, number_of_recoveries=0))
     world.wait(20)
     assert (message().count(";"), len(world.port.goals), goal.cancels) == (0, 1, 2)
-    goal.handlers.ended(Outcome.SUCCEEDED, Record(), "")
+    goal.handlers.ended(GoalOutcome.SUCCEEDED, Record(), "")
     world.wait(0.2)
     told = [line["event"] for line in events(world) if line["event"].startswith("action_travel")]
     assert told == [f"action_travel.{event}" for event in ENDS]
@@ -300,7 +300,7 @@ def test_a_goal_that_the_node_itself_cancels_is_canceled_by_the_plant(make: Call
     travelling(world)
     world.wait(1)
     assert world.port.goals[0].cancels == 1
-    world.port.goals[0].handlers.ended(Outcome.CANCELED, None, "")
+    world.port.goals[0].handlers.ended(GoalOutcome.CANCELED, None, "")
     world.wait(0.1)
     names = [line["event"] for line in events(world)]
     assert ("action_travel.u_error" in names) != ("action_travel.u_canceled" in names)
@@ -376,7 +376,7 @@ def test_what_goes_out_is_what_is_logged(steps: list[tuple[str, int]], tmp_path:
         elif world.port.goals and step == "accept":
             world.port.goals[-1].handlers.accepted()
         elif world.port.goals and step == "end":
-            world.port.goals[-1].handlers.ended(list(Outcome)[number % 3], None, "")
+            world.port.goals[-1].handlers.ended(list(GoalOutcome)[number % 3], None, "")
         world.event_loop.run_pending()
     world.controller.stop()
     count = len(world.port.sent)

@@ -12,11 +12,11 @@ from jsonschema import Draft202012Validator
 from robosc.base.files.resources import locate
 from robosc.language.configuration import Configuration
 from robosc.language.configuration.parameters import layer_parameters
-from robosc.model.semantics.messages import message_named
+from robosc.model.semantics.messages import find_message
 from robosc.run.runtime.core.cancel_requests import GoalTimes
 from robosc.run.runtime.core.event_loop import EventLoop
 from robosc.run.runtime.core.layer import Layer
-from robosc.run.runtime.core.port import Failure, Outcome
+from robosc.run.runtime.core.port import Failure, GoalOutcome
 from robosc.run.runtime.core.proxies import ActionProxy, ProxiedGoal
 from robosc.run.runtime.core.settings import SafeMessages, Settings
 from tests.run.runtime.fake import FakePort, Record, supervised
@@ -42,7 +42,7 @@ class Bench:
         values = {
             parameter.name: parameter.default for parameter in layer_parameters(self.graph, configuration, str(log))
         }
-        instead = [message_named(self.graph, name) for name in on_blocked]
+        instead = [find_message(self.graph, name) for name in on_blocked]
         safe = SafeMessages(on_blocked=[sending for sending in instead if sending is not None])
         self.layer = Layer(self.graph, Settings(values, configuration), self.port, self.event_loop, safe)
         (self.action,) = self.graph.actionClients
@@ -162,21 +162,23 @@ class Proxy(ActionProxy[ProxiedGoal]):
 @pytest.mark.parametrize(
     ("outcome", "late", "said"),
     [
-        (Outcome.ABORTED, False, "aborted"),
-        (Outcome.ABORTED, True, "aborted"),
-        (Outcome.LOST, False, "the server has lost the goal"),
-        (Outcome.LOST, True, "the server has lost the goal"),
+        (GoalOutcome.ABORTED, False, "aborted"),
+        (GoalOutcome.ABORTED, True, "aborted"),
+        (GoalOutcome.LOST, False, "the server has lost the goal"),
+        (GoalOutcome.LOST, True, "the server has lost the goal"),
     ],
 )
 def test_a_goal_without_an_end_is_lost(
-    bench: Bench, monkeypatch: pytest.MonkeyPatch, outcome: Outcome, late: bool, said: str
+    bench: Bench, monkeypatch: pytest.MonkeyPatch, outcome: GoalOutcome, late: bool, said: str
 ) -> None:
     told: list[tuple[Any, ...]] = []
     monkeypatch.setattr(bench.layer, "fail", lambda _, *reason: told.append(reason[:2]))
     proxy = Proxy(bench.port, bench.event_loop, bench.action, bench.layer, GoalTimes(2.0, 2.0))
     goal = ProxiedGoal("identifier", Record(), sent=True, accepted=True, late=late)
     proxy._receive_end(goal, outcome, Record())
-    reason = {Outcome.LOST: Failure.LOST, Outcome.ABORTED: Failure.TIMEOUT if late else Failure.ABORTED}[outcome]
+    reason = {GoalOutcome.LOST: Failure.LOST, GoalOutcome.ABORTED: Failure.TIMEOUT if late else Failure.ABORTED}[
+        outcome
+    ]
     assert told == [(reason, said)]
 
 

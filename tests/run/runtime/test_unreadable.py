@@ -11,7 +11,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from robosc.language.configuration import Configuration
-from robosc.run.runtime.core.port import Outcome
+from robosc.run.runtime.core.port import GoalOutcome
 from tests.run.runtime.fake import Record, World
 from tests.searching import examples
 
@@ -158,12 +158,12 @@ def test_feedback_and_results(world: World) -> None:
     assert component(world, "Visitor")["variables"]["next"] == 0
     goal.feedback(Record(stops=[1, 2]))
     assert component(world, "Visitor")["variables"]["next"] == 2
-    goal.ended(Outcome.SUCCEEDED, Record(stops=[9]), "")
+    goal.ended(GoalOutcome.SUCCEEDED, Record(stops=[9]), "")
     visitor = component(world, "Visitor")
     assert visitor == {"state": "planned", "variables": {"cost": 5.0, "stop": 3, "next": 2, "failures": 1}}
     assert "/visit: there is no element 1 in an array of 1" in world.port.said
     world.wait(0.45)
-    world.port.goals[1].handlers.ended(Outcome.SUCCEEDED, Record(stops=[8, 9]), "")
+    world.port.goals[1].handlers.ended(GoalOutcome.SUCCEEDED, Record(stops=[8, 9]), "")
     assert component(world, "Visitor")["variables"] | {"failures": 0} == {
         "cost": 5.0,
         "stop": 8,

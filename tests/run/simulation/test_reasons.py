@@ -12,10 +12,10 @@ from click.testing import CliRunner
 
 import robosc
 from robosc.run.simulation import LoopSimulation, Simulation, read_script
-from robosc.run.simulation.kept import Kept
 from robosc.run.simulation.replay import Replay
 from robosc.run.simulation.script import REFUSE
 from robosc.run.simulation.session import Session, trace_line
+from robosc.run.simulation.stored_variables import StoredVariables
 from robosc.tools.cli import main
 
 MODEL = Path(__file__).parent / "crane.rscd"
@@ -298,7 +298,7 @@ def test_by_hand(crane: Any) -> None:
 def test_what_the_node_keeps(crane: Any) -> None:
     """The node stores `Base.rest`."""
     simulation = Simulation(crane.model, crane)
-    kept = Kept(simulation.engine, crane)
+    kept = StoredVariables(simulation.engine, crane)
     assert kept.initial == {"Base.rest": 0}
     for data, rest in [
         ({"value": {"rest": 2.5}, "reason": "lost"}, 2.5),

@@ -8,7 +8,7 @@ import robosc
 from robosc.model import sct
 from robosc.run.simulation import Simulation
 from robosc.run.simulation.replay import Replay
-from robosc.tools.debugger.launching import Launch
+from robosc.tools.debugger.launch import Launch
 from tests.searching import slow_but
 
 from ..runtime.fake import World

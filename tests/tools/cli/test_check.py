@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from robosc.base.diagnostics import Edit
-from robosc.language.checks.fixing import Checked
+from robosc.language.checks.automatic_edits import CheckedModel
 
 from .conftest import DOOR, Run
 
@@ -134,7 +134,7 @@ def test_a_fix_that_makes_a_model_worse_is_left_out(run: Run, tmp_path: Path) ->
 def test_rounds_end_where_a_text_was_seen_before(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     seen = []
 
-    def forth_and_back(found: Checked, _: object) -> list[Edit]:
+    def forth_and_back(found: CheckedModel, _: object) -> list[Edit]:
         text = found.reading.file.text
         seen.append(text.content)
         start = text.content.index(" {")

@@ -11,7 +11,7 @@ import pytest
 from robosc.model import sct
 from robosc.synthesis import Phase
 from robosc.tools.cli import progress as module
-from robosc.tools.cli.progress import progress, synthesizing
+from robosc.tools.cli.progress import progress, show_progress
 from tests.sct_models import model, plant
 
 
@@ -77,7 +77,7 @@ def test_a_failure_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_how_far_a_synthesis_is(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stderr", terminal := Terminal())
     monkeypatch.setenv("COLUMNS", "200")
-    with synthesizing(sct.SupervisoryControlModel()) as statistics:
+    with show_progress(sct.SupervisoryControlModel()) as statistics:
         wait_for("synthesizing the supervisor", terminal)
         with statistics.during(Phase.FIXPOINT):
             statistics.rounds, statistics.states, statistics.operations, statistics.peak_nodes = 2, 34 * 10**29, 1234, 5
@@ -90,7 +90,7 @@ def test_how_far_a_synthesis_is(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_too_little_memory(variable: str, hint: str) -> None:
     """The hint mentions integers only if the model has some."""
     given = model([plant("p", {"a": []}, variables={"v": variable})])
-    with pytest.raises(MemoryError, match=hint), synthesizing(given):
+    with pytest.raises(MemoryError, match=hint), show_progress(given):
         raise MemoryError
 
 

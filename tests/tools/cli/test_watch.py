@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from robosc.tools.cli import watching
+from robosc.tools.cli import file_watch
 
 from .conftest import LAMPS, Run
 
@@ -29,7 +29,7 @@ def meanwhile(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
                 raise KeyboardInterrupt
             step()
 
-        monkeypatch.setattr(watching.time, "sleep", sleep)
+        monkeypatch.setattr(file_watch.time, "sleep", sleep)
 
     return prepare
 

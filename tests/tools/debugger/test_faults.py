@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 import robosc
 from robosc.m2t.models import Models
 from robosc.tools.debugger import Adapter, Connection
-from robosc.tools.debugger.launching import _KEYS
+from robosc.tools.debugger.launch import _KEYS
 from robosc.tools.debugger.protocol import FramingError
 from robosc.tools.debugger.stops import FILTERS
 from tests.searching import examples

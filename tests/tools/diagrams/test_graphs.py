@@ -16,7 +16,7 @@ import robosc
 from robosc.base.diagnostics.visible import visible
 from robosc.language.reading import read
 from robosc.tools.diagrams import GRAPH_NOTATIONS, behaviour_graph, diagram, plants_graph, ros_graph
-from robosc.tools.diagrams.graph import Arrow, Graph, Group, Node
+from robosc.tools.diagrams.graph import Arrow, DiagramNode, Graph, Group
 from robosc.tools.diagrams.graph_drawing import draw
 from robosc.tools.diagrams.graph_layout import lay_out
 from tests.searching import examples
@@ -133,7 +133,10 @@ def made(title: str, text: str, *, states: bool) -> Graph:
     """Return a diagram with texts in every place, escaped as all builders do."""
     title, text = visible(title), visible(text)
     kind, other = ("state", "every") if states else ("topic", "controller")
-    nodes = [Node("c1_1", kind, title, [(text, title)], initial=True, marked=True), Node("c1_2", other, text)]
+    nodes = [
+        DiagramNode("c1_1", kind, title, [(text, title)], initial=True, marked=True),
+        DiagramNode("c1_2", other, text),
+    ]
     arrow = Arrow("c1_1", "c1_2", ((text,),))
     group = Group("c1", title or "t", [text], nodes, [arrow]) if states else Group("c1", "", (), nodes, [arrow])
     return Graph(title, [group])
@@ -188,7 +191,7 @@ def groups(draw: st.DrawFn, *, downwards: bool) -> Group:
     titles = draw(st.lists(st.integers(1, 20).map("x".__mul__), min_size=count, max_size=count))
     rows = draw(st.lists(st.sampled_from([(), [("row",)]]), min_size=count, max_size=count))
     nodes = [
-        Node(f"n{number}", "state", title, lines, initial=downwards and number == 0)
+        DiagramNode(f"n{number}", "state", title, lines, initial=downwards and number == 0)
         for number, (title, lines) in enumerate(zip(titles, rows, strict=True))
     ]
     pairs = st.tuples(st.integers(0, count - 1), st.integers(0, count - 1)).filter(lambda pair: pair[0] != pair[1])

@@ -12,7 +12,7 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 from pygls.protocol.json_rpc import JsonRPCRequestMessage
 
-from robosc.base.interruption import checking, checkpoint
+from robosc.base.interruption import call_at_checkpoints, checkpoint
 from robosc.tools.editor import server as editor_server
 from robosc.tools.editor.project import Project
 from robosc.tools.editor.server import Server
@@ -48,7 +48,7 @@ def test_an_analysis_may_be_interrupted_at_every_checkpoint() -> None:
     while last < 2000:
         last += 1
         calls = 0
-        with checking(check):
+        with call_at_checkpoints(check):
             try:
                 whole = made.snapshot().analysis(path)
                 break
@@ -65,7 +65,7 @@ def test_a_change_interrupts_the_reading_of_the_text_before() -> None:
     snapshot = server.project.snapshot()
     check = server._check(snapshot)
     server.project.change(URI, 2, [(None, ROBOT)])
-    with checking(check), pytest.raises(JsonRpcException) as error:
+    with call_at_checkpoints(check), pytest.raises(JsonRpcException) as error:
         snapshot.analysis(path)
     assert error.value.code == types.LSPErrorCodes.ContentModified
     server.shutdown()
@@ -85,7 +85,7 @@ def test_work_that_takes_too_long_is_abandoned_and_said(monkeypatch: pytest.Monk
     monkeypatch.setattr(editor_server, "_LONGEST", 0)
     server = Server("0")
     path = server.project.put(URI, 1, ROBOT)
-    with checking(server._check(server.project.snapshot())), pytest.raises(JsonRpcException) as error:
+    with call_at_checkpoints(server._check(server.project.snapshot())), pytest.raises(JsonRpcException) as error:
         server.project.snapshot().analysis(path)
     assert error.value.code == types.LSPErrorCodes.RequestFailed
     (finding,) = server._findings(server.project.snapshot())[path]
@@ -104,7 +104,7 @@ def test_threads_analyze_a_text_once_and_a_waiting_one_may_be_interrupted() -> N
             raise StopError
 
         def wait() -> None:
-            with checking(stop):
+            with call_at_checkpoints(stop):
                 try:
                     snapshot.analysis(path)
                 except StopError as fault:

@@ -7,7 +7,7 @@ import pytest
 from lsprotocol import types
 from pygls.uris import to_fs_path
 
-from robosc.language.checks.fixing import Safety
+from robosc.language.checks.automatic_edits import Safety
 from robosc.tools.editor import findings
 from robosc.tools.editor.findings import code_actions
 from robosc.tools.editor.project import Project, Snapshot

@@ -11,7 +11,7 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
 from robosc.language.text import Text
-from robosc.tools.editor.findings import published
+from robosc.tools.editor.findings import findings_by_path
 from robosc.tools.editor.project import Project
 from robosc.tools.editor.reading import hover
 from robosc.tools.editor.server import ANSWERS
@@ -71,7 +71,7 @@ def ask_everything(made: Project, text: str, offset: int) -> None:
     made.put(URI, 2, text)
     snapshot = made.snapshot()
     analysis = snapshot.analysis(made.path(URI))
-    published(snapshot, [analysis])
+    findings_by_path(snapshot, [analysis])
     hover(snapshot, analysis, parameters(types.TEXT_DOCUMENT_HOVER, analysis.text, offset))
     question(snapshot, analysis)
     communication_at(analysis, offset)
@@ -141,7 +141,7 @@ def test_edits_one_by_one_are_the_text_as_a_whole(changes: list[tuple[int, int, 
     assert seen.findings == expected.findings
     assert seen.text.content == expected.text.content
     assert names(seen) == names(expected)
-    assert published(now, [seen]) == published(then, [expected])
+    assert findings_by_path(now, [seen]) == findings_by_path(then, [expected])
     for method in (types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL, types.TEXT_DOCUMENT_DOCUMENT_SYMBOL):
         asked = parameters(method, seen.text, 0)
         assert ANSWERS[method](now, seen, asked) == ANSWERS[method](then, expected, asked)

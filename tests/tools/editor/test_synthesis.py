@@ -74,7 +74,7 @@ async def test_a_process_ends_when_its_text_changes() -> None:
     found.cancel()
     with pytest.raises(asyncio.CancelledError):
         await second
-    assert found.known(first.path, first.texts) is None
+    assert found.lookup(first.path, first.texts) is None
 
 
 @pytest.mark.asyncio

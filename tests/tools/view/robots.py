@@ -10,12 +10,12 @@ import robosc
 from robosc.m2t.models import Models
 from robosc.run.simulation import Simulation
 from robosc.tools.view import Record, describe
-from robosc.tools.view.server import told
+from robosc.tools.view.server import stream_moments
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from robosc.run.simulation import Step
+    from robosc.run.simulation import ScriptStep
     from robosc.tools.view import Moments
 
 #: A text with visible effects if any of it became markup.
@@ -48,7 +48,9 @@ robot Gate {{
 """
 
 
-def record(text: str = GATE, steps: Sequence[Step] | None = None) -> tuple[Mapping[str, object], Record, Simulation]:
+def record(
+    text: str = GATE, steps: Sequence[ScriptStep] | None = None
+) -> tuple[Mapping[str, object], Record, Simulation]:
     """Return the description and record of a robot, and a second simulation for reference."""
     robot = robosc.load(text=text)
     model, graph = robosc.to_sct(robot), robosc.to_rosgraph(robot)
@@ -77,7 +79,7 @@ class Viewer:
 
     def __init__(self, shown: Moments) -> None:
         self._shown = shown
-        self._stream = told(shown)
+        self._stream = stream_moments(shown)
         self._first = 0
         self.moments: list[dict[str, Any]] = []
 

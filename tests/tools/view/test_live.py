@@ -68,13 +68,13 @@ def test_the_last_moment_is_what_the_engine_says(steps: list[tuple[str, Any]], k
     async def look() -> None:
         node, shown = Node(), live(kept)
         early, happened = Viewer(shown), 0
-        shown.defined(definition_text(GRAPH))
+        shown.receive_definition(definition_text(GRAPH))
         for event, data in steps:
             if event != "report":
                 node.perform(event, **data)
                 continue
             happened += max(1, len(node.pending))
-            shown.told(node.report())
+            shown.receive_report(node.report())
             assert shown.length == happened
             assert len(shown.moments) <= kept
             late = Viewer(shown)
@@ -95,9 +95,9 @@ def test_the_last_moment_is_what_the_engine_says(steps: list[tuple[str, Any]], k
 def test_times_run_while_events_tell_of_them() -> None:
     node, shown = Node(), live()
     node.perform(OPEN)
-    shown.told(node.report())
+    shown.receive_report(node.report())
     node.perform(CAR, value=True)
-    shown.told(node.report())
+    shown.receive_report(node.report())
     assert [moment["time"] for moment in shown.moments] == [0.0, 0.1]
     assert [moment["timers"] for moment in shown.moments] == [
         {"component_Barrier.u_after1": 2000},
@@ -109,7 +109,7 @@ def test_it_says_whom_it_waits_for() -> None:
     node, shown = Node(), live()
     assert shown.status == "Waiting for /gate_controller."
     shown.heard(1)
-    shown.told(node.report())
+    shown.receive_report(node.report())
     assert shown.status == ""
     shown.heard(0)
     assert shown.status == "Waiting for /gate_controller to come back."
@@ -120,14 +120,14 @@ def test_it_says_whom_it_waits_for() -> None:
 def test_a_node_of_another_model_is_named() -> None:
     node, shown = Node(), live()
     shown.heard(1)
-    shown.defined(definition_text(GRAPH).replace("opened", "ajar"))
+    shown.receive_definition(definition_text(GRAPH).replace("opened", "ajar"))
     assert "another version of the model" in shown.status
-    shown.defined(definition_text(GRAPH))
+    shown.receive_definition(definition_text(GRAPH))
     assert shown.status == ""
-    shown.told(node.report().replace("closed", "ajar"))
+    shown.receive_report(node.report().replace("closed", "ajar"))
     assert "ajar" in shown.status
     assert shown.moments == []
-    shown.told(node.report())
+    shown.receive_report(node.report())
     assert (shown.status, len(shown.moments)) == ("", 1)
 
 
@@ -135,7 +135,7 @@ def test_a_node_of_another_model_is_named() -> None:
 @given(st.text() | st.sampled_from(["null", "[", '{"time": 1e999}', "[" * 10_000, '{"robot": "\\ud800"}']))
 def test_what_is_no_report_changes_nothing(text: str) -> None:
     shown = live()
-    shown.told(text)
-    shown.defined(text)
+    shown.receive_report(text)
+    shown.receive_definition(text)
     assert shown.moments == []
     assert shown.status != "Waiting for /gate_controller."

@@ -29,7 +29,7 @@ from .robots import EVIL, record
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from robosc.run.simulation.simulation import Happened
+    from robosc.run.simulation.simulation import RequestResult
 
 pytestmark = pytest.mark.build
 
@@ -111,7 +111,7 @@ def with_offset(random: Random, event: str, data: dict[str, Any], offset: float)
     return {"value": offset}, offset
 
 
-def driven(random: Random, length: int) -> list[tuple[Happened, float]]:
+def driven(random: Random, length: int) -> list[tuple[RequestResult, float]]:
     """Return random events of a line follower, each with the offset after it."""
     simulation, offset, happened = simulation_of(MODEL), 0.0, []
     for _ in range(length):

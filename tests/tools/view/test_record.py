@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from robosc.engine import Blocked
 from robosc.run.simulation import DataError, Simulation, read_script
-from robosc.run.simulation.script import Step
+from robosc.run.simulation.script import ScriptStep
 from robosc.run.simulation.simulation import whole_state
 from robosc.tools.view.moments import ActionError
 from tests.searching import examples
@@ -99,7 +99,7 @@ def test_a_refusal_says_why() -> None:
 
 
 def test_a_script_is_played_with_what_it_asks_in_vain() -> None:
-    steps = [Step(1, EVENTS[1], {}), Step(2, EVENTS[0], {}), Step(3, "wait", {"seconds": 3})]
+    steps = [ScriptStep(1, EVENTS[1], {}), ScriptStep(2, EVENTS[0], {}), ScriptStep(3, "wait", {"seconds": 3})]
     _, shown, simulation = record(steps=steps)
     assert [moment.get("event") for moment in shown.moments] == [None, EVENTS[1], EVENTS[0], EVENTS[3], "wait"]
     assert [moment.get("by") for moment in shown.moments] == [None, Blocked.PLANT, None, None, None]
@@ -190,12 +190,12 @@ def test_a_label_is_the_text_without_comments() -> None:
 
 def test_explained() -> None:
     _, shown, _ = record()
-    told_of = shown.explained(0, EVENTS[1])
+    told_of = shown.explain(0, EVENTS[1])
     assert not told_of["allowed"]
     assert told_of["way"] == "request to `Barrier.open`"
     for moment, event in ((1, EVENTS[1]), (-1, EVENTS[1]), (0, "nothing")):
         with pytest.raises(ActionError):
-            shown.explained(moment, event)
+            shown.explain(moment, event)
 
 
 @settings(max_examples=examples(15))

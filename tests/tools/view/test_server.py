@@ -9,9 +9,9 @@ import pytest
 from starlette.testclient import TestClient
 
 from robosc.tools.view import page
+from robosc.tools.view.http_server import reachable
 from robosc.tools.view.page import FILES, POLICY
 from robosc.tools.view.server import application
-from robosc.tools.view.serving import reachable
 
 from .robots import GATE, record
 

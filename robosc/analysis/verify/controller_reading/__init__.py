@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.analysis.system import counted
+from robosc.analysis.system import format_count
 from robosc.analysis.verify.controller_reading.loop import LoopComparison
 from robosc.analysis.verify.controller_reading.times import Effort, TimeComparison
 from robosc.analysis.verify.controller_reading.topics import compare_topics
@@ -61,7 +61,7 @@ def validate_controller(models: Models, effort: Effort = ENOUGH) -> Verdict:
     except DifferenceError as difference:
         return Verdict(PROPERTY, Outcome.REFUTED, "", difference.explanation, difference.trace, difference.onwards)
     number = sum(map(len, controller.times.values()))
-    evidence = f"{counted(number, 'time')}, {counted(len(text.events), 'event')}"
+    evidence = f"{format_count(number, 'time')}, {format_count(len(text.events), 'event')}"
     if times.is_sampled:
         return Verdict(PROPERTY, Outcome.SAMPLED, f"{evidence}, some with random data")
     return Verdict(PROPERTY, Outcome.PROVED, evidence)

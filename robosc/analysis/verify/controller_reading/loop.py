@@ -116,8 +116,8 @@ class LoopComparison:
                 )
         for event in self._executed.events:
             name = self._names[event.event]
-            wanted: Plant | None = self._controller.choice(name)
-            if event.choice is not (None if wanted is None else choices[wanted]):
+            chosen_plant: Plant | None = self._controller.choice(name)
+            if event.choice is not (None if chosen_plant is None else choices[chosen_plant]):
                 raise DifferenceError(f"{self._shown(name)} sends other data in the controller")
         for choice in self._executed.choices:
             self._compare_chosen(choice)

@@ -20,7 +20,7 @@ from robosc.engine.state import Domain
 from robosc.model import engine, sct
 from robosc.model.semantics.durations import timer_text
 from robosc.model.semantics.roles import event_name
-from robosc.synthesis import encoded
+from robosc.synthesis import use_encoding
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -178,8 +178,10 @@ class TimeComparison:
         if not restarts and not self._controller.concerns(name, component):
             return
         conditions = [restart.condition for restart in event.restarts if restart.condition is not None]
-        read = [part.variable for part in all_inside(conditions) if isinstance(part, engine.VariableReference)]
-        slots = self._controller.reads(name, component).union(self._slots[cell.variable or cell.plant] for cell in read)
+        variables = [part.variable for part in all_inside(conditions) if isinstance(part, engine.VariableReference)]
+        slots = self._controller.reads(name, component).union(
+            self._slots[cell.variable or cell.plant] for cell in variables
+        )
         for state, inputs in self._cases(sorted(slots), self._plants.events[name]):
             ours = self._controller.effects(name, component, state, inputs)
             if ours is None:
@@ -225,7 +227,7 @@ class TimeComparison:
             first = next(case for case, here in zip(differing, states, strict=True) if (here & last).satisfiable())
             return first, system.trace(path)
 
-        shown = encoded(self._executed.model, look)
+        shown = use_encoding(self._executed.model, look)
         if shown is None:
             return
         case, trace = shown
@@ -236,10 +238,10 @@ class TimeComparison:
             [TraceStep(event_name(event.event), dict(case.inputs))],
         )
 
-    def _states(self, held: State, encoding: Encoding) -> Diagram:
+    def _states(self, values: State, encoding: Encoding) -> Diagram:
         """Return all states in which the slots hold these values."""
         states = encoding.diagrams.true
-        for slot, value in held.items():
+        for slot, value in values.items():
             element = self._plants.sources[slot]
             if isinstance(element, sct.Plant):
                 location = next(place for place in element.locations if place.name == value)

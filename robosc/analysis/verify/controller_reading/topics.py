@@ -39,8 +39,8 @@ def compare_topics(controller: ControllerText, plants: Machine, graph: rosgraph.
             for name in events:
                 _compare(name.plant, text, topic, is_same=controller.topic(name.plant) == key[0])
             if events != sorted(events, key=ours.index):
-                said = f"the messages on topic `{topic}`"
-                raise DifferenceError(f"{said} are in another order in the node than in the text")
+                messages = f"the messages on topic `{topic}`"
+                raise DifferenceError(f"{messages} are in another order in the node than in the text")
     for service in graph.serviceClients:
         plant = names[service.request.event].plant
         _compare(plant, text, service.identifier, is_same=service.identifier == text.topics[plant])

@@ -22,9 +22,9 @@ if TYPE_CHECKING:
         Claim,
         Domain,
         Event,
+        EventOutcome,
         Literal,
         Machine,
-        Outcome,
         Restriction,
         Slot,
         Value,
@@ -69,7 +69,7 @@ class Effort:
     random: int = 500_000
 
 
-class Walked(NamedTuple):
+class ComparisonExtent(NamedTuple):
     """Extent of the comparison: numbers of states and events, whether it is exhaustive, and random steps.
 
     Without random steps, a comparison that is not exhaustive covers each event in all states, reachable or not.
@@ -84,7 +84,7 @@ class Walked(NamedTuple):
 class _Pair:
     """An event in both readings, with its effects in the states so far."""
 
-    def __init__(self, text: Event, plants: Event, layout: _Layout, most: int) -> None:
+    def __init__(self, text: Event, plants: Event, layout: _SlotLayout, most: int) -> None:
         self.text, self.plants = text, plants
         self.reads = sorted(text.reads | plants.reads)
         self.mask = layout.mask(self.reads)
@@ -117,7 +117,7 @@ class _Pair:
         return {name: domain[random.randrange(_size(domain))] for name, domain in self.domains.items()}
 
 
-class _Layout:
+class _SlotLayout:
     """States as integers, with some bits for each slot that any condition or event reads."""
 
     def __init__(self, domains: Mapping[Slot, Domain]) -> None:
@@ -141,13 +141,13 @@ class _Layout:
 
     def change(self, writes: Mapping[Slot, Value]) -> tuple[int, int]:
         """Return the bits to keep and the bits to add for an assignment to slots."""
-        kept, added = -1, 0
+        preserved, added = -1, 0
         for slot, value in writes.items():
             if slot in self._places:
                 place, ones = self._places[slot]
-                kept &= ~(ones << place)
+                preserved &= ~(ones << place)
                 added |= self.domains[slot].index(value) << place  # type: ignore[arg-type]
-        return kept, added
+        return preserved, added
 
 
 class _Group:
@@ -160,16 +160,16 @@ class _Group:
 
     def learn(self, state: int, changes: Iterable[tuple[int, int]]) -> tuple[tuple[int, int], ...]:
         """Cache the changes of the pairs for all states with the same slots; return the effective ones."""
-        found = tuple(
-            (kept, added)
-            for kept, added in dict.fromkeys(changes)
-            if ~kept & ~self.mask or state & kept | added != state
+        distinct_changes = tuple(
+            (preserved, added)
+            for preserved, added in dict.fromkeys(changes)
+            if ~preserved & ~self.mask or state & preserved | added != state
         )
-        self.known[state & self.mask] = found
-        return found
+        self.known[state & self.mask] = distinct_changes
+        return distinct_changes
 
 
-def _groups(pairs: Iterable[_Pair], layout: _Layout) -> Iterator[_Group]:
+def _groups(pairs: Iterable[_Pair], layout: _SlotLayout) -> Iterator[_Group]:
     """Yield groups of all pairs, in their order."""
     together: list[_Pair] = []
     slots: set[Slot] = set()
@@ -192,9 +192,9 @@ class Lockstep:
         self._random = Random(0)  # noqa: S311 - the same values on every run
         self._tries = 0
         claims = list(zip(text.conditions, plants.conditions, strict=True))
-        read = {slot for event in (*text.events.values(), *plants.events.values()) for slot in event.reads}
-        read |= {slot for pair in claims for claim in pair for slot in claim.condition.reads}
-        self._layout = _Layout({slot: domain for slot, domain in text.domains.items() if slot in read})
+        slots = {slot for event in (*text.events.values(), *plants.events.values()) for slot in event.reads}
+        slots |= {slot for pair in claims for claim in pair for slot in claim.condition.reads}
+        self._layout = _SlotLayout({slot: domain for slot, domain in text.domains.items() if slot in slots})
         self._pairs = [
             _Pair(event, plants.events[name], self._layout, effort.inputs) for name, event in text.events.items()
         ]
@@ -210,7 +210,7 @@ class Lockstep:
         self._before = {self._initial: self._initial}
         self._waiting = deque(self._before)
 
-    def run(self) -> Walked:
+    def run(self) -> ComparisonExtent:
         """Compare all states, or as many as the effort allows plus a sample; raise DifferenceError."""
         most = min(self._effort.states, self._effort.bits // self._layout.bits)
         is_sampled = any(pair.is_sampled for pair in self._pairs)
@@ -220,7 +220,7 @@ class Lockstep:
             is_whole = self._explore(most) and not is_sampled
             steps = 0 if is_whole else max(1, self._effort.random // len(self._pairs))
         self._wander(steps)
-        return Walked(len(self._before), len(self._pairs), is_whole, steps)
+        return ComparisonExtent(len(self._before), len(self._pairs), is_whole, steps)
 
     def _explore(self, most: int) -> bool:
         """Explore up to `most` states breadth first; return whether these are all."""
@@ -234,11 +234,11 @@ class Lockstep:
                 self._claimed(state, state)
             self._tries += len(self._pairs)
             for group in self._groups:
-                found = group.known.get(state & group.mask)
-                if found is None:
-                    found = group.learn(state, self._changes(group, state))
-                for kept, added in found:
-                    successor = state & kept | added
+                cached = group.known.get(state & group.mask)
+                if cached is None:
+                    cached = group.learn(state, self._changes(group, state))
+                for preserved, added in cached:
+                    successor = state & preserved | added
                     if successor not in before:
                         before[successor] = state
                         waiting.append(successor)
@@ -247,23 +247,23 @@ class Lockstep:
     def _is_same_everywhere(self) -> bool:
         """Return whether no state has a difference; False also if there are too many states to try."""
         left = self._effort.values
-        asked: list[tuple[Sequence[Slot], _Pair | None, Sequence[Claim]]] = [
+        comparisons: list[tuple[Sequence[Slot], _Pair | None, Sequence[Claim]]] = [
             (pair.reads, pair, ()) for pair in self._pairs
         ]
-        asked += [(reads, None, (claim, other)) for claim, other, _, reads, _ in self._claims]
-        for reads, pair, _ in asked:
-            read = [self._layout.domains[slot] for slot in reads]
-            left -= prod(map(_size, [*read, *(pair.domains.values() if pair else ())]))
+        comparisons += [(reads, None, (claim, other)) for claim, other, _, reads, _ in self._claims]
+        for reads, pair, _ in comparisons:
+            domains = [self._layout.domains[slot] for slot in reads]
+            left -= prod(map(_size, [*domains, *(pair.domains.values() if pair else ())]))
         if left < 0:
             return False
-        for reads, pair, claims in asked:
+        for reads, pair, claims in comparisons:
             for values in product(*(self._layout.domains[slot] for slot in reads)):
-                held = dict(zip(reads, values, strict=True))
-                if len({_holds(claim, held) for claim in claims}) > 1:
+                state = dict(zip(reads, values, strict=True))
+                if len({_holds(claim, state) for claim in claims}) > 1:
                     return False
                 for inputs in pair.all_choices() if pair else ():
                     try:
-                        self._effect(cast("_Pair", pair), held, inputs, ())
+                        self._effect(cast("_Pair", pair), state, inputs, ())
                     except DifferenceError:  # The state may be unreachable.
                         cast("_Pair", pair).differing = inputs
                         return False
@@ -283,8 +283,8 @@ class Lockstep:
             if not possible or len(trace) == 100:
                 state, trace = self._initial, []
                 continue
-            (kept, added), step = self._random.choice(possible)
-            state = state & kept | added
+            (preserved, added), step = self._random.choice(possible)
+            state = state & preserved | added
             trace.append(step)
 
     def _changes(self, group: _Group, state: int) -> Iterator[tuple[int, int]]:
@@ -296,11 +296,11 @@ class Lockstep:
             yield from pair.known[key]
 
     def _compared(self, pair: _Pair, state: int) -> tuple[tuple[int, int], ...]:
-        held = self._state(pair.reads, state)
+        slots = self._state(pair.reads, state)
         changes: dict[tuple[int, int], None] = {}
         for inputs in pair.choices(self._random):
             self._tries += _COMPUTED
-            change = self._effect(pair, held, inputs, state)
+            change = self._effect(pair, slots, inputs, state)
             if change is not None:
                 changes[change] = None
         return tuple(changes)
@@ -309,18 +309,18 @@ class Lockstep:
         return {slot: self._layout.value(slot, state) for slot in slots}
 
     def _effect(
-        self, pair: _Pair, held: Mapping[Slot, Value], inputs: Mapping[str, Value], way: int | Sequence[TraceStep]
+        self, pair: _Pair, slots: Mapping[Slot, Value], inputs: Mapping[str, Value], way: int | Sequence[TraceStep]
     ) -> tuple[int, int] | None:
         """Return the change of an event in both readings; None if it is impossible or forbidden."""
-        ours = pair.text.happen(held, inputs)
+        ours = pair.text.happen(slots, inputs)
         try:
-            theirs = pair.plants.happen(held, inputs)
+            theirs = pair.plants.happen(slots, inputs)
         except AmbiguousError as error:
-            said = f"{error} for {words(pair.plants.element)}{line(error.source)}"
-            raise self._difference(said, held, inputs, way) from error
-        said = _unlike(ours, theirs, held, pair)
-        if said:
-            raise self._difference(said, held, inputs, way)
+            message = f"{error} for {words(pair.plants.element)}{line(error.source)}"
+            raise self._difference(message, slots, inputs, way) from error
+        message = _unlike(ours, theirs, slots, pair)
+        if message:
+            raise self._difference(message, slots, inputs, way)
         if ours.refused or ours.forbidden:
             return None
         return self._layout.change(ours.writes)
@@ -330,22 +330,22 @@ class Lockstep:
         for claim, other, mask, reads, known in self._claims:
             if state & mask not in known:
                 known.add(state & mask)
-                held = self._state(reads, state)
-                ours = _holds(claim, held)
-                if ours is not _holds(other, held):
-                    said = f"{claim.what}{line(claim.source)} {'holds' if ours else 'does not hold'} by the text"
-                    said += f" and {'does not' if ours else 'does'} in the model{where(held)}"
-                    raise DifferenceError(said, self._way(way))
+                slots = self._state(reads, state)
+                ours = _holds(claim, slots)
+                if ours is not _holds(other, slots):
+                    message = f"{claim.what}{line(claim.source)} {'holds' if ours else 'does not hold'} by the text"
+                    message += f" and {'does not' if ours else 'does'} in the model{where(slots)}"
+                    raise DifferenceError(message, self._way(way))
 
     def _difference(
         self,
-        said: str,
-        held: Mapping[Slot, Value],
+        message: str,
+        slots: Mapping[Slot, Value],
         inputs: Mapping[str, Value],
         way: int | Sequence[TraceStep],
     ) -> DifferenceError:
         data = f" with {', '.join(f'{name} = {_text(value)}' for name, value in inputs.items())}" if inputs else ""
-        return DifferenceError(f"{said}{where(held)}{data}", self._way(way))
+        return DifferenceError(f"{message}{where(slots)}{data}", self._way(way))
 
     def _way(self, way: int | Sequence[TraceStep]) -> list[TraceStep]:
         """Return the shortest sequence of events that leads to a state."""
@@ -360,13 +360,13 @@ class Lockstep:
 
     def _between(self, before: int, after: int) -> TraceStep:
         for pair in self._pairs:
-            if any(before & kept | added == after for kept, added in pair.known.get(before & pair.mask, ())):
-                held = self._state(pair.reads, before)
+            if any(before & preserved | added == after for preserved, added in pair.known.get(before & pair.mask, ())):
+                slots = self._state(pair.reads, before)
                 for inputs in pair.choices(Random(0)):  # noqa: S311
-                    outcome = pair.text.happen(held, inputs)
+                    outcome = pair.text.happen(slots, inputs)
                     if not outcome.refused and not outcome.forbidden:
-                        kept, added = self._layout.change(outcome.writes)
-                        if before & kept | added == after:
+                        preserved, added = self._layout.change(outcome.writes)
+                        if before & preserved | added == after:
                             return _step(pair, inputs)
         raise AssertionError(f"no event leads from {before} to {after}")
 
@@ -388,60 +388,62 @@ def _same_things(text: Machine, plants: Machine) -> None:
 
 def _same_slot(slot: Slot, text: Machine, plants: Machine) -> None:
     here, there = text.domains.get(slot), plants.domains.get(slot)
-    said = f"{_called(slot)}{line(text.sources.get(slot))}"
+    slot_words = f"{_called(slot)}{line(text.sources.get(slot))}"
     if here is None or there is None:
-        raise DifferenceError(f"{said} is only in {'the model' if here is None else 'the text'}")
+        raise DifferenceError(f"{slot_words} is only in {'the model' if here is None else 'the text'}")
     if _kind(here) != _kind(there):
-        raise DifferenceError(f"{said} has {_values(here)} by the text, {_values(there)} in the model")
+        raise DifferenceError(f"{slot_words} has {_values(here)} by the text, {_values(there)} in the model")
     first, other = text.initial[slot], plants.initial[slot]
     if first != other:
-        raise DifferenceError(f"{said} begins at {_text(first)} by the text, at {_text(other)} in the model")
+        raise DifferenceError(f"{slot_words} begins at {_text(first)} by the text, at {_text(other)} in the model")
     for location in sorted(text.marked.get(slot, frozenset()) ^ plants.marked.get(slot, frozenset())):
         only = "text" if location in text.marked[slot] else "model"
-        raise DifferenceError(f"location `{location}` of {said} is marked only in the {only}")
+        raise DifferenceError(f"location `{location}` of {slot_words} is marked only in the {only}")
 
 
 def _same_event(ours: Event, theirs: Event) -> None:
-    said = words(theirs.element)
-    place = "" if " in line " in said else line(ours.element)
+    event_words = words(theirs.element)
+    place = "" if " in line " in event_words else line(ours.element)
     if (ours.controllable, ours.kind) != (theirs.controllable, theirs.kind):
         other = f"{'' if theirs.controllable else 'un'}controllable in the model, of kind {theirs.kind}"
-        raise DifferenceError(f"{said}{place} is {other}")
+        raise DifferenceError(f"{event_words}{place} is {other}")
     if ours.timer != theirs.timer:
-        raise DifferenceError(f"{said}{place} has another time or place in the model")
+        raise DifferenceError(f"{event_words}{place} has another time or place in the model")
     for name, domain in ours.inputs.items():
         if theirs.inputs[name] != domain:
             there = _values(theirs.inputs[name])
-            raise DifferenceError(f"`{name}` of {said}{place} has {_values(domain)} by the text, {there} in the model")
+            raise DifferenceError(
+                f"`{name}` of {event_words}{place} has {_values(domain)} by the text, {there} in the model"
+            )
 
 
-def _unlike(ours: Outcome, theirs: Outcome, held: Mapping[Slot, Value], pair: _Pair) -> str:
+def _unlike(ours: EventOutcome, theirs: EventOutcome, slots: Mapping[Slot, Value], pair: _Pair) -> str:
     """Return how two readings of an event in a state differ, as text; empty if they agree."""
-    mine, other = _changed(ours, held), _changed(theirs, held)
+    mine, other = _changed(ours, slots), _changed(theirs, slots)
     if (bool(ours.refused), bool(ours.forbidden), mine) == (bool(theirs.refused), bool(theirs.forbidden), other):
         return ""
-    said = words(pair.plants.element)
+    event_words = words(pair.plants.element)
     if bool(ours.refused) != bool(theirs.refused):
         if ours.refused:
-            return f"{said} can happen in the plants, and not by the text{line(ours.refused.source)}"
+            return f"{event_words} can happen in the plants, and not by the text{line(ours.refused.source)}"
         lines = _lines(taken.source for taken in ours.taken) or line(pair.text.element)
-        return f"{said} can happen by the text{lines}, and not in the plants"
+        return f"{event_words} can happen by the text{lines}, and not in the plants"
     if bool(ours.forbidden) != bool(theirs.forbidden):
-        found: Restriction | None = ours.forbidden or theirs.forbidden
-        assert found is not None
+        restriction: Restriction | None = ours.forbidden or theirs.forbidden
+        assert restriction is not None
         who = ("the text", "the model") if ours.forbidden else ("the model", "the text")
-        return f"{said} is forbidden by {who[0]}{line(found.source)}, and not by {who[1]}"
+        return f"{event_words} is forbidden by {who[0]}{line(restriction.source)}, and not by {who[1]}"
     for slot in dict.fromkeys([*mine, *other]):
         if mine.get(slot) != other.get(slot):
             lines = _lines(taken.source for taken in ours.taken if slot in taken.writes) or line(pair.text.element)
-            told = f"{_becomes(slot, mine)} by the text{lines}, and {_becomes(slot, other)} in the plants"
-            return f"after {said}, {_called(slot)} {told}"
+            difference = f"{_becomes(slot, mine)} by the text{lines}, and {_becomes(slot, other)} in the plants"
+            return f"after {event_words}, {_called(slot)} {difference}"
     raise AssertionError("they do not differ")
 
 
-def _changed(outcome: Outcome, held: Mapping[Slot, Value]) -> dict[Slot, Value]:
+def _changed(outcome: EventOutcome, slots: Mapping[Slot, Value]) -> dict[Slot, Value]:
     """Return the writes that change a value."""
-    return {slot: value for slot, value in outcome.writes.items() if held.get(slot, None) != value}
+    return {slot: value for slot, value in outcome.writes.items() if slots.get(slot, None) != value}
 
 
 def _becomes(slot: Slot, writes: Mapping[Slot, Value]) -> str:
@@ -450,8 +452,8 @@ def _becomes(slot: Slot, writes: Mapping[Slot, Value]) -> str:
     return f"is {_text(writes[slot])}" if slot.variable else f"is in `{writes[slot]}`"
 
 
-def _holds(claim: Claim, held: Mapping[Slot, Value]) -> bool:
-    return bool(claim.condition.compute(held, {})) is claim.wanted
+def _holds(claim: Claim, slots: Mapping[Slot, Value]) -> bool:
+    return bool(claim.condition.compute(slots, {})) is claim.value
 
 
 def _step(pair: _Pair, inputs: Mapping[str, Value]) -> TraceStep:
@@ -486,14 +488,14 @@ def _called(slot: Slot) -> str:
     return f"the data of {owner}" if kind == "data" else owner
 
 
-def where(held: Mapping[Slot, Value]) -> str:
+def where(slots: Mapping[Slot, Value]) -> str:
     """Return values of slots as a condition of the language, without unnamed requirement automata."""
-    said = [
+    conditions = [
         f"{slot.plant.origin}.{slot.variable} = {_text(value)}" if slot.variable else f"{slot.plant.origin}.{value}"
-        for slot, value in held.items()
+        for slot, value in slots.items()
         if slot.plant.kind != "requirement"
     ]
-    return f" where `{' and '.join(said)}`" if said else ""
+    return f" where `{' and '.join(conditions)}`" if conditions else ""
 
 
 def line(source: ex.Located | None) -> str:
@@ -502,5 +504,5 @@ def line(source: ex.Located | None) -> str:
 
 
 def _lines(sources: Iterable[ex.Located | None]) -> str:
-    found = sorted({part.source.span.line for part in sources if part is not None and part.source is not None})
-    return f" (line{'s' if len(found) > 1 else ''} {', '.join(map(str, found))})" if found else ""
+    numbers = sorted({part.source.span.line for part in sources if part is not None and part.source is not None})
+    return f" (line{'s' if len(numbers) > 1 else ''} {', '.join(map(str, numbers))})" if numbers else ""

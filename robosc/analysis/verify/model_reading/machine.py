@@ -40,7 +40,7 @@ class At(NamedTuple):
     location: str
 
 
-class Told(NamedTuple):
+class EventInput(NamedTuple):
     """Input of the event, by its name in the plants."""
 
     name: str
@@ -53,7 +53,7 @@ class Literal(str):
 
 
 #: Meaning of a reference in an expression.
-Meaning: TypeAlias = Slot | At | Told | Literal
+Meaning: TypeAlias = Slot | At | EventInput | Literal
 
 
 class EventName(NamedTuple):
@@ -70,7 +70,7 @@ class Condition(NamedTuple):
     reads: frozenset[Slot]
 
 
-class Taken(NamedTuple):
+class EventEffect(NamedTuple):
     """Changes of an event, and their source in the text or in the plants."""
 
     writes: Mapping[Slot, Value]
@@ -84,17 +84,17 @@ class Participant:
     `component` is the plant of the component that has these transitions, None if no component has them.
     """
 
-    step: Callable[[Mapping[Slot, Value], Mapping[str, Value]], Taken | None]
+    step: Callable[[Mapping[Slot, Value], Mapping[str, Value]], EventEffect | None]
     reads: frozenset[Slot]
     source: ex.Located | None
     component: Plant | None = None
 
 
 class Restriction(NamedTuple):
-    """Requirement on an event; it allows the event if its condition has the value `wanted`."""
+    """Requirement on an event; it allows the event if its condition has the value `value`."""
 
     condition: Condition
-    wanted: bool
+    value: bool
     source: ex.Located | None
 
 
@@ -119,12 +119,12 @@ class Timer(NamedTuple):
     without: frozenset[EventName]
 
 
-class Outcome(NamedTuple):
+class EventOutcome(NamedTuple):
     """Result of an event: the participant that refuses it, the requirement that forbids it, or its changes."""
 
     refused: Participant | None
     forbidden: Restriction | None
-    taken: Sequence[Taken]
+    taken: Sequence[EventEffect]
 
     @property
     def writes(self) -> dict[Slot, Value]:
@@ -147,21 +147,21 @@ class Event:
     @property
     def reads(self) -> frozenset[Slot]:
         """Slots that the result of the event depends on."""
-        found = [participant.reads for participant in self.participants]
-        return frozenset().union(*found, *(restriction.condition.reads for restriction in self.restrictions))
+        slots = [participant.reads for participant in self.participants]
+        return frozenset().union(*slots, *(restriction.condition.reads for restriction in self.restrictions))
 
-    def happen(self, state: Mapping[Slot, Value], inputs: Mapping[str, Value]) -> Outcome:
+    def happen(self, state: Mapping[Slot, Value], inputs: Mapping[str, Value]) -> EventOutcome:
         """Return the result of the event in a state with some inputs."""
-        taken: list[Taken] = []
+        taken: list[EventEffect] = []
         for participant in self.participants:
             step = participant.step(state, inputs)
             if step is None:
-                return Outcome(participant, None, ())
+                return EventOutcome(participant, None, ())
             taken.append(step)
         for restriction in self.restrictions:
-            if bool(restriction.condition.compute(state, inputs)) is not restriction.wanted:
-                return Outcome(None, restriction, ())
-        return Outcome(None, None, taken)
+            if bool(restriction.condition.compute(state, inputs)) is not restriction.value:
+                return EventOutcome(None, restriction, ())
+        return EventOutcome(None, None, taken)
 
 
 @dataclass
@@ -187,35 +187,35 @@ class Claim(NamedTuple):
 
     what: str
     condition: Condition
-    wanted: bool
+    value: bool
     source: ex.Located | None
 
 
-def compiled(expression: ex.Expression, meaning: Callable[[ex.Expression], Meaning]) -> Condition:
+def compile_condition(expression: ex.Expression, meaning: Callable[[ex.Expression], Meaning]) -> Condition:
     """Return an expression as a condition; `meaning` resolves its references."""
     reads: set[Slot] = set()
 
     def reader(reference: ex.Expression) -> Callable[..., Any]:
-        found = meaning(reference)
-        if isinstance(found, At):
-            slot, location = found
+        target = meaning(reference)
+        if isinstance(target, At):
+            slot, location = target
             reads.add(slot)
             return lambda state, _: state[slot] == location
-        if isinstance(found, Slot):
-            reads.add(found)
-            return lambda state, _: state[found]
-        if isinstance(found, Told):
-            name = found.name
+        if isinstance(target, Slot):
+            reads.add(target)
+            return lambda state, _: state[target]
+        if isinstance(target, EventInput):
+            name = target.name
             return lambda _, inputs: inputs[name]
-        return lambda *_: found
+        return lambda *_: target
 
     program = Program[Any](expression, reader)
     return Condition(program, frozenset(reads))
 
 
-def fitting(value: Any, domain: Domain) -> Value:
+def saturate(value: Any, domain: Domain) -> Value:
     """Return the value of a slot after an assignment; an integer saturates at its range."""
     if isinstance(domain, range):
         return min(max(int(value), domain.start), domain.stop - 1)
-    held: Value = value
-    return held
+    result: Value = value
+    return result

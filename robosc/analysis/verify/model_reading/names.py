@@ -50,8 +50,8 @@ class Instance:
     def behaviour(self, kind: type[_Definition]) -> list[_Definition]:
         """Return the definitions of a kind in the component's automaton."""
         automata = self.of(robosc.ComponentBehaviour)
-        found = (definition for behaviour in automata for definition in behaviour.automaton.definitions)
-        return [definition for definition in found if isinstance(definition, kind)]
+        definitions = (definition for behaviour in automata for definition in behaviour.automaton.definitions)
+        return [definition for definition in definitions if isinstance(definition, kind)]
 
     @property
     def plant(self) -> Plant:
@@ -84,9 +84,14 @@ class Names:
             if isinstance(component, robosc.Component) and not component.parameters:
                 self._of[component] = _instance(component)
         self.observers: dict[tuple[robosc.Requirement, Instance | None], Plant] = {
-            stated: Plant("requirement", str(number))
-            for number, stated in enumerate(
-                (stated for stated in self.stated(robosc.Requirement) if isinstance(stated[0], OBSERVERS)), start=1
+            requirement: Plant("requirement", str(number))
+            for number, requirement in enumerate(
+                (
+                    requirement
+                    for requirement in self.definitions(robosc.Requirement)
+                    if isinstance(requirement[0], OBSERVERS)
+                ),
+                start=1,
             )
         }
         self._meanings: dict[ex.Expression, Meaning | Data] = {}
@@ -95,7 +100,7 @@ class Names:
     def __iter__(self) -> Iterator[Instance]:
         return iter(self._of.values())
 
-    def stated(self, kind: type[_Definition]) -> list[tuple[_Definition, Instance | None]]:
+    def definitions(self, kind: type[_Definition]) -> list[tuple[_Definition, Instance | None]]:
         """Return definitions outside of components, then those in each component."""
         outside = [(definition, None) for definition in self.robot.definitions if isinstance(definition, kind)]
         return [*outside, *((definition, instance) for instance in self for definition in instance.of(kind))]
@@ -104,9 +109,9 @@ class Names:
         self, reference: robosc.CommunicationReference, within: Instance | None
     ) -> tuple[Instance, robosc.CommunicationType]:
         """Return the instance and the communication that a reference names."""
-        return self._meant(reference.component, Environment(within)), reference.communicationType
+        return self._instance_of(reference.component, Environment(within)), reference.communicationType
 
-    def _meant(self, component: robosc.Component | None, place: Environment) -> Instance:
+    def _instance_of(self, component: robosc.Component | None, place: Environment) -> Instance:
         if component is not None and component in place.at_hand:
             return place.at_hand[component]
         if place.within is not None and (component is None or component is place.within.text):
@@ -116,8 +121,8 @@ class Names:
 
     def written_out(self, expression: ex.Expression, place: Environment) -> ex.Expression:
         """Return a new expression without names of expressions; `meaning` resolves its references."""
-        made: ex.Expression = walk(self._write, (expression, place))
-        return made
+        expanded: ex.Expression = walk(self._write, (expression, place))
+        return expanded
 
     def meaning(self, reference: ex.Expression) -> Meaning | Data:
         """Return the meaning of a reference."""
@@ -125,9 +130,9 @@ class Names:
 
     def leaf(self, meaning: Meaning | Data) -> ex.Expression:
         """Return an expression with this meaning."""
-        made = robosc.Access()
-        self._meanings[made] = meaning
-        return made
+        access = robosc.Access()
+        self._meanings[access] = meaning
+        return access
 
     def constant(self, expression: ex.Expression, place: Environment) -> Any:
         """Return the value of a constant expression; the value of an enum is a Literal."""
@@ -137,7 +142,7 @@ class Names:
         """Return the ROS name of the parameter that an expression consists of; None if it is no parameter."""
         if not isinstance(expression, robosc.Access) or not isinstance(expression.item, robosc.Parameter):
             return None
-        owner = f"{self._meant(expression.component, place).name}." if _is_member(expression.item) else ""
+        owner = f"{self._instance_of(expression.component, place).name}." if _is_member(expression.item) else ""
         return f"{owner}{expression.item.name}"
 
     def settings(self, expression: ex.Expression, place: Environment) -> tuple[float, float, float]:
@@ -147,7 +152,7 @@ class Names:
         assert isinstance(parameter, robosc.Parameter)
         inside = Environment()
         if _is_member(parameter):
-            inside = self._inside(parameter, self._meant(expression.component, place))
+            inside = self._inside(parameter, self._instance_of(expression.component, place))
         whole = self.domain(parameter.type, inside)
         first = self.constant(parameter.value, inside)
         if isinstance(whole, range):
@@ -182,12 +187,12 @@ class Names:
             case robosc.Access():
                 return (yield from self._access(expression, place))
             case robosc.Call(function=function):
-                given = {
+                arguments = {
                     parameter: (argument, place)
                     for parameter, argument in zip(function.parameters, expression.arguments, strict=True)
                 }
                 inner = self._inside(function, place.within)
-                body = yield function.value, inner._replace(bound={**inner.bound, **given})
+                body = yield function.value, inner._replace(bound={**inner.bound, **arguments})
                 return cast("ex.Expression", body)
             case robosc.InstanceQuantifier():
                 return (yield from self._quantified(expression, place))
@@ -213,9 +218,9 @@ class Names:
             case None | robosc.ArrayElement():
                 return (yield from self._data(access, place))
             case robosc.FormalParameter():
-                given: ex.Expression = yield place.bound[item]
+                argument: ex.Expression = yield place.bound[item]
                 # Arguments of an instance are constant; arguments of a function may be any expressions.
-                return self._folded(given) if isinstance(item.eContainer(), robosc.Component) else given
+                return self._folded(argument) if isinstance(item.eContainer(), robosc.Component) else argument
             case robosc.EnumValue():
                 return self.leaf(Literal(item.name))
             case robosc.Parameter():
@@ -227,7 +232,7 @@ class Names:
                 inside = isinstance(automaton.eContainer(), robosc.LocalComponent)
                 plant = self.observers[automaton, place.within if inside else None]
                 return self.leaf(At(Slot(plant), item.name))
-        instance = self._meant(access.component, place) if access.component or _is_member(item) else None
+        instance = self._instance_of(access.component, place) if access.component or _is_member(item) else None
         match item:
             case robosc.State() if instance is not None:
                 return self.leaf(At(Slot(instance.plant), item.name))
@@ -259,21 +264,23 @@ class Names:
     def _quantified(
         self, quantifier: robosc.InstanceQuantifier, place: Environment
     ) -> Generator[Any, Any, ex.Expression]:
-        found: list[ex.Expression] = []
+        bodies: list[ex.Expression] = []
         for instance in self:
             if instance.text is quantifier.template:
                 body = yield quantifier.body, place._replace(at_hand={**place.at_hand, quantifier.template: instance})
-                found.append(body)
+                bodies.append(body)
         if quantifier.quantifier == robosc.Quantifier.count:
             number = ex.IntegerLiteral
-            found = [ex.Conditional(condition=body, then=number(value=1), otherwise=number(value=0)) for body in found]
+            bodies = [
+                ex.Conditional(condition=body, then=number(value=1), otherwise=number(value=0)) for body in bodies
+            ]
             combined: Any = ex.Addition
             start: ex.Expression = number(value=0)
         else:
             everyone = quantifier.quantifier == robosc.Quantifier.all
             combined = ex.Conjunction if everyone else ex.Disjunction
             start = ex.BooleanLiteral(value=everyone)
-        return reduce(lambda left, right: combined(left=left, right=right), found, start)
+        return reduce(lambda left, right: combined(left=left, right=right), bodies, start)
 
     def _data(self, access: robosc.Access, place: Environment) -> Generator[Any, Any, ex.Expression]:
         path: list[str] = []
@@ -305,9 +312,9 @@ class Names:
         return isinstance(self._meanings.get(part), Slot | At) or any(inside)
 
     def _words(self, expression: ex.Expression) -> list[str]:
-        return fold(self._said, expression)
+        return fold(self._part_words, expression)
 
-    def _said(self, part: ex.Expression, inside: list[list[str]]) -> list[str]:
+    def _part_words(self, part: ex.Expression, inside: list[list[str]]) -> list[str]:
         meaning = self._meanings.get(part)
         if isinstance(meaning, Data):
             return list(meaning.words)
@@ -321,7 +328,7 @@ class Names:
             assert isinstance(part, _LITERALS)
             return [_word(part)]
         if isinstance(part, ex.FunctionCall):
-            return [row.symbol, *reduce(lambda said, more: [*said, ",", *more], inside)]
+            return [row.symbol, *reduce(lambda words, more: [*words, ",", *more], inside)]
         return [*(inside[0] if len(inside) == 2 else ()), row.symbol, *inside[-1]]
 
 
@@ -349,15 +356,15 @@ def _instance(component: robosc.Component) -> Instance:
     remapped: dict[robosc.CommunicationType, robosc.TopicRemapping] = {}
     text = component
     while not isinstance(text.type, robosc.LocalComponent):
-        made = text.type
-        assert isinstance(made, robosc.InstantiatedComponent | robosc.ImportedComponent)
-        text = made.definition
+        instantiation = text.type
+        assert isinstance(instantiation, robosc.InstantiatedComponent | robosc.ImportedComponent)
+        text = instantiation.definition
         outside = Environment(bound=dict(arguments))
-        for position, argument in enumerate(made.arguments):
+        for position, argument in enumerate(instantiation.arguments):
             arguments[argument.parameter or text.parameters[position]] = argument.value, outside
         for parameter in text.parameters:
             if parameter.default is not None and parameter not in arguments:
                 arguments[parameter] = parameter.default, Environment()
-        for remapping in made.remappings if isinstance(made, robosc.ImportedComponent) else ():
+        for remapping in instantiation.remappings if isinstance(instantiation, robosc.ImportedComponent) else ():
             remapped.setdefault(remapping.communicationType, remapping)
     return Instance(component.name, text, arguments, remapped)

@@ -10,6 +10,8 @@ from robosc.analysis.verify.model_reading.machine import (
     Claim,
     Condition,
     Event,
+    EventEffect,
+    EventInput,
     EventName,
     Length,
     Literal,
@@ -19,11 +21,9 @@ from robosc.analysis.verify.model_reading.machine import (
     Plant,
     Restriction,
     Slot,
-    Taken,
     Timer,
-    Told,
-    compiled,
-    fitting,
+    compile_condition,
+    saturate,
 )
 from robosc.model import expression as ex
 from robosc.model import sct
@@ -44,10 +44,10 @@ class AmbiguousError(Exception):
 
 def read_plants(model: sct.SupervisoryControlModel) -> Machine:
     """Return the reading of plants and requirements, without the supervisor."""
-    return _Reading(model).run()
+    return _PlantReading(model).run()
 
 
-class _Reading:
+class _PlantReading:
     def __init__(self, model: sct.SupervisoryControlModel) -> None:
         self.model = model
         self.machine = Machine()
@@ -68,11 +68,11 @@ class _Reading:
             machine.marked[slot] = frozenset(location.name for location in plant.locations if location.marked)
             machine.sources[slot] = plant
             for variable in plant.variables:
-                held = Slot(called, variable.name)
-                machine.domains[held] = _domain(variable.type)
+                target = Slot(called, variable.name)
+                machine.domains[target] = _domain(variable.type)
                 assert variable.initial is not None
-                machine.initial[held] = compiled(variable.initial, self.meaning).compute({}, {})
-                machine.sources[held] = variable
+                machine.initial[target] = compile_condition(variable.initial, self.meaning).compute({}, {})
+                machine.sources[target] = variable
             for event in plant.events:
                 machine.events[self.name(event)] = Event(
                     event.kind.name,
@@ -84,8 +84,8 @@ class _Reading:
         for plant in self.plants:
             self.edges(plant)
         for required in self.model.requirements:
-            wanted = required.kind == sct.RequirementKind.needs
-            restriction = Restriction(self.condition(required.condition), wanted, required)
+            value = required.kind == sct.RequirementKind.needs
+            restriction = Restriction(self.condition(required.condition), value, required)
             machine.events[self.name(required.event)].restrictions.append(restriction)
         self.claims()
         return machine
@@ -113,12 +113,12 @@ class _Reading:
             case sct.VariableReference(variable=variable):
                 return Slot(self.plants[variable.eContainer()], variable.name)
             case sct.InputReference():
-                return Told(reference.input.name)
+                return EventInput(reference.input.name)
         assert isinstance(reference, ex.EnumerationLiteralReference)
         return Literal(reference.literal.name)
 
     def condition(self, expression: ex.Expression) -> Condition:
-        return compiled(expression, self.meaning)
+        return compile_condition(expression, self.meaning)
 
     def edges(self, plant: sct.Plant) -> None:
         """Add a participant for each event of a plant, with the edges of its locations."""
@@ -138,27 +138,27 @@ class _Reading:
     ) -> Participant:
         slot = Slot(self.plants[plant])
         reads = {slot} if leaving else set()
-        read: dict[sct.Edge, Any] = {}
+        compiled_edges: dict[sct.Edge, Any] = {}
         for edge in [*everywhere, *(edge for edges in leaving.values() for edge in edges)]:
             guard = None if edge.guard is None else self.condition(edge.guard)
             updates = [
                 (Slot(slot.plant, update.variable.name), self.condition(update.value)) for update in edge.updates
             ]
-            read[edge] = guard, updates
+            compiled_edges[edge] = guard, updates
             reads.update(*(condition.reads for condition in [guard, *(value for _, value in updates)] if condition))
         domains = self.machine.domains
 
-        def step(state: Mapping[Slot, Value], inputs: Mapping[str, Value]) -> Taken | None:
-            found: Taken | None = None
+        def step(state: Mapping[Slot, Value], inputs: Mapping[str, Value]) -> EventEffect | None:
+            effect: EventEffect | None = None
             for edge in [*leaving.get(str(state[slot]), ()), *everywhere] if leaving else everywhere:
-                guard, updates = read[edge]
+                guard, updates = compiled_edges[edge]
                 if guard is None or guard.compute(state, inputs):
-                    given = {held: fitting(value.compute(state, inputs), domains[held]) for held, value in updates}
-                    taken = Taken({slot: edge.target.name, **given}, edge)
-                    if found is not None and found.writes != taken.writes:
+                    values = {slot: saturate(value.compute(state, inputs), domains[slot]) for slot, value in updates}
+                    taken = EventEffect({slot: edge.target.name, **values}, edge)
+                    if effect is not None and effect.writes != taken.writes:
                         raise AmbiguousError(edge)
-                    found = taken
-            return found
+                    effect = taken
+            return effect
 
         return Participant(step, frozenset(reads), plant)
 

@@ -13,6 +13,8 @@ from robosc.analysis.verify.model_reading.machine import (
     Claim,
     Condition,
     Event,
+    EventEffect,
+    EventInput,
     EventName,
     Length,
     Machine,
@@ -21,11 +23,9 @@ from robosc.analysis.verify.model_reading.machine import (
     Plant,
     Restriction,
     Slot,
-    Taken,
     Timer,
-    Told,
-    compiled,
-    fitting,
+    compile_condition,
+    saturate,
 )
 from robosc.analysis.verify.model_reading.names import (
     OBSERVERS,
@@ -99,10 +99,10 @@ def read_text(robot: robosc.Base, plants: Machine) -> Machine:
     takes the range of values that the node computes; if such a value is assigned to a variable, the range must be the
     variable's.
     """
-    return _Reading(robot, plants).run()
+    return _TextReading(robot, plants).run()
 
 
-class _Reading:
+class _TextReading:
     def __init__(self, robot: robosc.Base, plants: Machine) -> None:
         self.names = Names(robot)
         self.plants = plants
@@ -122,8 +122,8 @@ class _Reading:
                 self.behaviour(instance)
         self.provided()
         self.required()
-        for (stated, within), plant in self.names.observers.items():
-            self.observer(stated, within, plant)
+        for (requirement, within), plant in self.names.observers.items():
+            self.observer(requirement, within, plant)
         self.claims()
         return self.machine
 
@@ -163,9 +163,9 @@ class _Reading:
         kind = name.partition("_")[2]
         kind = {"after": "timeout"}.get(kind.rstrip("0123456789"), kind.rstrip("0123456789"))
         kind = "data" if plant.kind == "data" else kind
-        made = Event(kind, controllable=name.startswith("c_"), element=element)
-        self.machine.events[EventName(plant, name)] = made
-        return made
+        event = Event(kind, controllable=name.startswith("c_"), element=element)
+        self.machine.events[EventName(plant, name)] = event
+        return event
 
     def of(self, reference: robosc.CommunicationReference, named: str, within: Instance | None) -> EventName:
         return EventName(_plant(*self.names.port(reference, within)), named)
@@ -189,13 +189,13 @@ class _Reading:
 
     def first_value(self, variable: robosc.Variable, domain: Domain, instance: Instance) -> Value:
         if variable.initial is not None:
-            given = self.names.constant(variable.initial, Environment(instance, instance.arguments))
-            return fitting(given, domain)
+            value = self.names.constant(variable.initial, Environment(instance, instance.arguments))
+            return saturate(value, domain)
         if isinstance(variable.type, robosc.ComplexDataTypeReference):
             assert isinstance(variable.type.type, robosc.EnumDataType)
             rules = variable.type.type.rules
             return next(rule.value.name for rule in rules if isinstance(rule, robosc.EnumDefaultRule))
-        return fitting(0, domain) if isinstance(domain, range) else False
+        return saturate(0, domain) if isinstance(domain, range) else False
 
     def behaviour(self, instance: Instance) -> None:
         tried: dict[EventName, dict[str, list[robosc.Transition]]] = {}
@@ -223,8 +223,8 @@ class _Reading:
         for name, places in tried.items():
             # Transitions of every state are tried after those of a state itself.
             ordered = {
-                place: sorted(found, key=lambda transition: not isinstance(transition.eContainer(), robosc.State))
-                for place, found in places.items()
+                place: sorted(transitions, key=lambda transition: not isinstance(transition.eContainer(), robosc.State))
+                for place, transitions in places.items()
             }
             ignored = name.plant != instance.plant and name.name != "c_trigger"
             self.machine.events[name].participants.append(self.reaction(name, ordered, instance, ignored))
@@ -254,7 +254,7 @@ class _Reading:
         """
         location = Slot(instance.plant)
         reads = {location}
-        ways: dict[str, list[tuple[Condition | None, Taken, list[tuple[Slot, Condition]]]]] = {}
+        ways: dict[str, list[tuple[Condition | None, EventEffect, list[tuple[Slot, Condition]]]]] = {}
         known: dict[robosc.Transition, Any] = {}
         for state, transitions in tried.items():
             for transition in transitions:
@@ -266,13 +266,13 @@ class _Reading:
                 )
                 ways.setdefault(state, []).append((guard, fixed, assigned))
         domains = self.machine.domains
-        nothing = Taken({}, None)
+        nothing = EventEffect({}, None)
 
-        def step(state: Mapping[Slot, Value], inputs: Mapping[str, Value]) -> Taken | None:
+        def step(state: Mapping[Slot, Value], inputs: Mapping[str, Value]) -> EventEffect | None:
             for guard, fixed, assigned in ways.get(str(state[location]), ()):
                 if guard is None or guard.compute(state, inputs):
-                    given = {slot: fitting(value.compute(state, inputs), domains[slot]) for slot, value in assigned}
-                    return Taken({**fixed.writes, **given}, fixed.source)
+                    values = {slot: saturate(value.compute(state, inputs), domains[slot]) for slot, value in assigned}
+                    return EventEffect({**fixed.writes, **values}, fixed.source)
             return nothing if ignored else None
 
         source = next(iter(tried.values()))[0]
@@ -280,16 +280,16 @@ class _Reading:
 
     def way(
         self, transition: robosc.Transition, name: EventName, instance: Instance
-    ) -> tuple[Condition | None, Taken, list[tuple[Slot, Condition]]]:
+    ) -> tuple[Condition | None, EventEffect, list[tuple[Slot, Condition]]]:
         guard = transition.guard if isinstance(transition, robosc.GuardedTransition) else None
-        asked = None if guard is None else self.condition(guard, instance, name)
+        condition = None if guard is None else self.condition(guard, instance, name)
         writes = {} if transition.target is None else {Slot(instance.plant): transition.target.name}
         assigned: dict[Slot, Condition] = {}
         for assignment in transition.assignments:
             slot = Slot(instance.plant, assignment.item.item.name if assignment.item.item else "")
             if slot in self.plants.domains:
                 assigned[slot] = self.condition(assignment.value, instance, name, slot)
-        return asked, Taken(writes, transition), list(assigned.items())
+        return condition, EventEffect(writes, transition), list(assigned.items())
 
     # Expressions
 
@@ -305,22 +305,22 @@ class _Reading:
         written = self.names.written_out(expression, place)
         if name is not None:
             present = None if assigned is None else self.present(written, name)
-            written = walk(lambda part: self.told(part[0], name, part[1]), (written, assigned))
+            written = walk(lambda part: self.replace_inputs(part[0], name, part[1]), (written, assigned))
             if present is not None and assigned is not None:
                 written = ex.Conditional(condition=present, then=written, otherwise=self.names.leaf(assigned))
 
         def meaning(reference: ex.Expression) -> Meaning:
-            found = self.names.meaning(reference)
-            slot = found.slot if isinstance(found, At) else found
+            target = self.names.meaning(reference)
+            slot = target.slot if isinstance(target, At) else target
             if isinstance(slot, Slot) and slot not in self.machine.domains:
-                read = f"{slot.plant.origin}.{slot.variable}"
-                raise UnlikeError(f"the text reads `{read}`, which the plants do not have", expression)
-            if isinstance(found, Data):
-                said = "".join(found.words)
-                raise UnlikeError(f"the text reads `{said}`, for which the plants have no input", expression)
-            return found
+                variable = f"{slot.plant.origin}.{slot.variable}"
+                raise UnlikeError(f"the text reads `{variable}`, which the plants do not have", expression)
+            if isinstance(target, Data):
+                words = "".join(target.words)
+                raise UnlikeError(f"the text reads `{words}`, for which the plants have no input", expression)
+            return target
 
-        return compiled(written, meaning)
+        return compile_condition(written, meaning)
 
     def present(self, value: ex.Expression, name: EventName) -> ex.Expression | None:
         """Return the input that indicates whether a value of an error or a canceled goal is readable.
@@ -332,12 +332,14 @@ class _Reading:
         for carried in event.element.inputs if event is not None and name.name in _ENDS else ():
             if carried.text is not None and words_of(carried.text) == (*words, "=", *words):
                 self.machine.events[name].inputs[carried.name] = BOOLEANS
-                return self.names.leaf(Told(carried.name))
+                return self.names.leaf(EventInput(carried.name))
         if name.name in _ENDS and "[" in words:
             raise UnlikeError(f"the plants have no input for whether `{''.join(words)}` can be read", value)
         return None
 
-    def told(self, part: ex.Expression, name: EventName, assigned: Slot | None) -> Generator[Any, Any, ex.Expression]:
+    def replace_inputs(
+        self, part: ex.Expression, name: EventName, assigned: Slot | None
+    ) -> Generator[Any, Any, ex.Expression]:
         """Return the expression with its largest parts replaced by inputs of the event."""
         event = self.plants.events.get(name)
         inputs = event.element.inputs if event is not None else []
@@ -345,35 +347,35 @@ class _Reading:
         words = self.names.words(part) if computed else None
         alike = {input_name: event.inputs[input_name] for text, input_name in computed if event and text == words}
         if alike:
-            kept = None if assigned is None else self.machine.domains[assigned]
-            if isinstance(kept, range):
+            slot_range = None if assigned is None else self.machine.domains[assigned]
+            if isinstance(slot_range, range):
                 # Inputs of the same text differ in their range.
-                alike = {input_name: domain for input_name, domain in alike.items() if domain == kept}
+                alike = {input_name: domain for input_name, domain in alike.items() if domain == slot_range}
             if not alike:
                 raise UnlikeError("the plants have another range for a value computed from data", part)
-            told = next(iter(alike))
-            domain = _REASONS[name.plant.kind] if words == ("error",) else alike[told]
-            self.machine.events[name].inputs[told] = domain
-            return self.names.leaf(Told(told))
-        found = self.names.meaning(part) if isinstance(part, robosc.Access) else None
-        if isinstance(found, Data) and found.path is not None:
-            wanted = "_".join(["i", name.name.removeprefix("u_"), *found.path])
+            candidate = next(iter(alike))
+            domain = _REASONS[name.plant.kind] if words == ("error",) else alike[candidate]
+            self.machine.events[name].inputs[candidate] = domain
+            return self.names.leaf(EventInput(candidate))
+        target = self.names.meaning(part) if isinstance(part, robosc.Access) else None
+        if isinstance(target, Data) and target.path is not None:
+            expected_name = "_".join(["i", name.name.removeprefix("u_"), *target.path])
             fitted = [
                 carried.name
                 for carried in inputs
-                if carried.text is None and carried.name.rstrip("_") == wanted.rstrip("_")
+                if carried.text is None and carried.name.rstrip("_") == expected_name.rstrip("_")
             ]
             if len(fitted) == 1:
-                self.machine.events[name].inputs[fitted[0]] = self.carried(name, found.path)
-                return self.names.leaf(Told(fitted[0]))
+                self.machine.events[name].inputs[fitted[0]] = self.carried(name, target.path)
+                return self.names.leaf(EventInput(fitted[0]))
         inside = operands(part)
         if not inside:
             return part
-        made: list[ex.Expression] = []
+        parts: list[ex.Expression] = []
         for number, operand in enumerate(inside):
             branch = isinstance(part, ex.Conditional) and number > 0
-            made.append((yield operand, assigned if branch else None))
-        return with_operands(part, made)
+            parts.append((yield operand, assigned if branch else None))
+        return with_operands(part, parts)
 
     def carried(self, name: EventName, path: Sequence[str]) -> Domain:
         """Return the values of a part of an event's data."""
@@ -398,10 +400,10 @@ class _Reading:
 
         Statements outside of components replace those inside.
         """
-        found: dict[_Port, list[tuple[robosc.ProvideStatement, Instance | None]]] = {}
-        for statement, within in self.names.stated(robosc.ProvideStatement):
-            found.setdefault(self.names.port(statement.communicationType, within), []).append((statement, within))
-        for port, statements in found.items():
+        by_port: dict[_Port, list[tuple[robosc.ProvideStatement, Instance | None]]] = {}
+        for statement, within in self.names.definitions(robosc.ProvideStatement):
+            by_port.setdefault(self.names.port(statement.communicationType, within), []).append((statement, within))
+        for port, statements in by_port.items():
             outside = [statement for statement in statements if statement[1] is None]
             self.choice(Plant("data", _plant(*port).origin), outside or statements)
 
@@ -428,17 +430,17 @@ class _Reading:
         An action is canceled if one of its requirements does not hold.
         """
         known = (robosc.CommunicationRequirement, robosc.StateInvariant, *OBSERVERS)
-        for requirement, _ in self.names.stated(robosc.Requirement):
+        for requirement, _ in self.names.definitions(robosc.Requirement):
             if not isinstance(requirement, known):
                 raise NotReadError(requirement)
         starting: dict[EventName, list[Restriction]] = {}
-        for stated, within in self.names.stated(robosc.CommunicationRequirement):
-            wanted = not isinstance(stated, robosc.DisablesRequirement)
-            condition = self.condition(stated.condition, within)
+        for statement, within in self.names.definitions(robosc.CommunicationRequirement):
+            value = not isinstance(statement, robosc.DisablesRequirement)
+            condition = self.condition(statement.condition, within)
             for name in dict.fromkeys(
-                self.of(reference, "c_trigger", within) for reference in stated.target.communicationTypes
+                self.of(reference, "c_trigger", within) for reference in statement.target.communicationTypes
             ):
-                starting.setdefault(name, []).append(Restriction(condition, wanted, stated))
+                starting.setdefault(name, []).append(Restriction(condition, value, statement))
         for name, restrictions in starting.items():
             self.machine.events[name].restrictions += restrictions
         for name, event in self.machine.events.items():
@@ -446,19 +448,19 @@ class _Reading:
                 event.restrictions.append(_broken(starting.get(EventName(name.plant, "c_trigger"), []), event.element))
 
     def observer_slots(self) -> None:
-        for (stated, within), plant in self.names.observers.items():
-            if isinstance(stated, robosc.OrderRequirement):
-                self.locations(plant, ("waiting", "ready"), "waiting", ("waiting", "ready"), stated)
-            elif isinstance(stated, robosc.CountRequirement):
-                self.locations(plant, ("counting",), "counting", ["counting"], stated)
-                most = self.names.constant(stated.bound, Environment(within, within.arguments if within else {}))
-                self.slot(Slot(plant, "count"), range(most + 1), 0, stated)
+        for (requirement, within), plant in self.names.observers.items():
+            if isinstance(requirement, robosc.OrderRequirement):
+                self.locations(plant, ("waiting", "ready"), "waiting", ("waiting", "ready"), requirement)
+            elif isinstance(requirement, robosc.CountRequirement):
+                self.locations(plant, ("counting",), "counting", ["counting"], requirement)
+                most = self.names.constant(requirement.bound, Environment(within, within.arguments if within else {}))
+                self.slot(Slot(plant, "count"), range(most + 1), 0, requirement)
             else:
-                assert isinstance(stated, robosc.AutomatonRequirement)
-                names = tuple(state.name for state in stated.states)
-                initial = next(state.name for state in stated.states if state.initial)
-                marked = [state.name for state in stated.states if state.marked] or names
-                self.locations(plant, names, initial, marked, stated)
+                assert isinstance(requirement, robosc.AutomatonRequirement)
+                names = tuple(state.name for state in requirement.states)
+                initial = next(state.name for state in requirement.states if state.initial)
+                marked = [state.name for state in requirement.states if state.marked] or names
+                self.locations(plant, names, initial, marked, requirement)
 
     def named(self, reference: robosc.EventReference, within: Instance | None) -> EventName:
         """Return the named event, the request, or the arrival of an outgoing message."""
@@ -470,36 +472,36 @@ class _Reading:
         )
         return self.of(reference.communicationType, "u_response" if comes else "c_trigger", within)
 
-    def observer(self, stated: robosc.Requirement, within: Instance | None, plant: Plant) -> None:
-        if isinstance(stated, robosc.AutomatonRequirement):
-            self.automaton(stated, within, Slot(plant))
+    def observer(self, requirement: robosc.Requirement, within: Instance | None, plant: Plant) -> None:
+        if isinstance(requirement, robosc.AutomatonRequirement):
+            self.automaton(requirement, within, Slot(plant))
             return
-        assert isinstance(stated, robosc.OrderRequirement | robosc.CountRequirement)
-        anchor = self.named(stated.anchor, within)
-        targets = dict.fromkeys(self.named(event, within) for event in stated.target.events)
+        assert isinstance(requirement, robosc.OrderRequirement | robosc.CountRequirement)
+        anchor = self.named(requirement.anchor, within)
+        targets = dict.fromkeys(self.named(event, within) for event in requirement.target.events)
         events = self.machine.events
-        slot = Slot(plant) if isinstance(stated, robosc.OrderRequirement) else Slot(plant, "count")
+        slot = Slot(plant) if isinstance(requirement, robosc.OrderRequirement) else Slot(plant, "count")
         allowed = At(slot, "ready")
         for name in targets:
-            if isinstance(stated, robosc.CountRequirement):
+            if isinstance(requirement, robosc.CountRequirement):
                 holds = _below(slot, self.machine.domains[slot])
-                events[name].participants.append(_one_more(slot, stated))
+                events[name].participants.append(_one_more(slot, requirement))
             else:
                 holds = self.is_at(allowed)
-                if stated.each and name != anchor:
-                    events[name].participants.append(_always({slot: "waiting"}, stated))
-            events[name].restrictions.append(Restriction(holds, True, stated))
-        given: Value = "ready" if isinstance(stated, robosc.OrderRequirement) else 0
-        events[anchor].participants.append(_always({slot: given}, stated))
+                if requirement.each and name != anchor:
+                    events[name].participants.append(_always({slot: "waiting"}, requirement))
+            events[name].restrictions.append(Restriction(holds, True, requirement))
+        result: Value = "ready" if isinstance(requirement, robosc.OrderRequirement) else 0
+        events[anchor].participants.append(_always({slot: result}, requirement))
 
     def is_at(self, place: At) -> Condition:
-        return compiled(self.names.leaf(place), lambda _: place)
+        return compile_condition(self.names.leaf(place), lambda _: place)
 
-    def automaton(self, stated: robosc.AutomatonRequirement, within: Instance | None, slot: Slot) -> None:
+    def automaton(self, requirement: robosc.AutomatonRequirement, within: Instance | None, slot: Slot) -> None:
         """Add a requirement automaton: an event without a transition with a true condition is forbidden."""
         alphabet = {
             self.named(transition.event, within): transition
-            for state in stated.states
+            for state in requirement.states
             for transition in state.transitions
         }
         for name in alphabet:
@@ -513,33 +515,33 @@ class _Reading:
                     for transition in state.transitions
                     if self.named(transition.event, within) == name
                 ]
-                for state in stated.states
+                for state in requirement.states
             }
-            asked = (way[0] for found in ways.values() for way in found)
-            reads = frozenset({slot}).union(*(condition.reads for condition in asked if condition))
+            conditions = (way[0] for alternatives in ways.values() for way in alternatives)
+            reads = frozenset({slot}).union(*(condition.reads for condition in conditions if condition))
             event = self.machine.events[name]
-            event.participants.append(_following(slot, ways, reads, stated))
+            event.participants.append(_following(slot, ways, reads, requirement))
             possible = partial(_first, slot, ways)
-            event.restrictions.append(Restriction(Condition(possible, reads), True, stated))
+            event.restrictions.append(Restriction(Condition(possible, reads), True, requirement))
 
     def claims(self) -> None:
         """Read the conditions of `never`, `always`, and of properties."""
-        for stated, within in self.names.stated(robosc.StateInvariant):
-            wanted = stated.kind == robosc.InvariantKind.always
-            self.claim("the condition of an invariant", stated.condition, within, wanted, stated)
-        for claimed, within in self.names.stated(robosc.Property):
+        for invariant, within in self.names.definitions(robosc.StateInvariant):
+            value = invariant.kind == robosc.InvariantKind.always
+            self.claim("the condition of an invariant", invariant.condition, within, value, invariant)
+        for claimed, within in self.names.definitions(robosc.Property):
             if isinstance(claimed, robosc.InvariantProperty):
-                wanted = claimed.kind == robosc.InvariantKind.always
-                self.claim("the condition of a property", claimed.condition, within, wanted, claimed)
+                value = claimed.kind == robosc.InvariantKind.always
+                self.claim("the condition of a property", claimed.condition, within, value, claimed)
             elif isinstance(claimed, robosc.ReachabilityProperty):
                 self.claim("the reachable condition of a property", claimed.condition, within, True, claimed)
                 start = claimed.premise or ex.BooleanLiteral(value=True)
                 self.claim("the start condition of a property", start, within, True, claimed)
 
     def claim(
-        self, what: str, expression: ex.Expression, within: Instance | None, wanted: bool, source: ex.Located
+        self, what: str, expression: ex.Expression, within: Instance | None, value: bool, source: ex.Located
     ) -> None:
-        self.machine.conditions.append(Claim(what, self.condition(expression, within), wanted, source))
+        self.machine.conditions.append(Claim(what, self.condition(expression, within), value, source))
 
 
 def _plant(instance: Instance, communication: robosc.CommunicationType) -> Plant:
@@ -547,34 +549,34 @@ def _plant(instance: Instance, communication: robosc.CommunicationType) -> Plant
 
 
 def _phases(slot: Slot, step: Mapping[str, str], source: ex.Located) -> Participant:
-    def taken(state: Mapping[Slot, Value], _: Mapping[str, Value]) -> Taken | None:
+    def taken(state: Mapping[Slot, Value], _: Mapping[str, Value]) -> EventEffect | None:
         target = step.get(str(state[slot]))
-        return None if target is None else Taken({slot: target}, source)
+        return None if target is None else EventEffect({slot: target}, source)
 
     return Participant(taken, frozenset({slot}), source)
 
 
 def _chosen(
-    slot: Slot, location: str, asked: Sequence[tuple[Condition | None, bool]], source: ex.Located
+    slot: Slot, location: str, conditions: Sequence[tuple[Condition | None, bool]], source: ex.Located
 ) -> Participant:
     """Return a choice of data that needs each condition to have its value; a missing condition is true."""
 
-    def step(state: Mapping[Slot, Value], inputs: Mapping[str, Value]) -> Taken | None:
+    def step(state: Mapping[Slot, Value], inputs: Mapping[str, Value]) -> EventEffect | None:
         holds = (
-            (True if condition is None else bool(condition.compute(state, inputs))) is wanted
-            for condition, wanted in asked
+            (True if condition is None else bool(condition.compute(state, inputs))) is value
+            for condition, value in conditions
         )
-        return Taken({slot: location}, source) if all(holds) else None
+        return EventEffect({slot: location}, source) if all(holds) else None
 
-    return Participant(step, frozenset().union(*(condition.reads for condition, _ in asked if condition)), source)
+    return Participant(step, frozenset().union(*(condition.reads for condition, _ in conditions if condition)), source)
 
 
 def _always(writes: Mapping[Slot, Value], source: ex.Located) -> Participant:
-    return Participant(lambda *_: Taken(writes, source), frozenset(), source)
+    return Participant(lambda *_: EventEffect(writes, source), frozenset(), source)
 
 
 def _one_more(slot: Slot, source: ex.Located) -> Participant:
-    return Participant(lambda state, _: Taken({slot: int(state[slot]) + 1}, source), frozenset({slot}), source)
+    return Participant(lambda state, _: EventEffect({slot: int(state[slot]) + 1}, source), frozenset({slot}), source)
 
 
 def _broken(starting: Sequence[Restriction], source: ex.Located) -> Restriction:
@@ -585,7 +587,7 @@ def _broken(starting: Sequence[Restriction], source: ex.Located) -> Restriction:
 
     def compute(state: Mapping[Slot, Value], inputs: Mapping[str, Value]) -> bool:
         return any(
-            bool(restriction.condition.compute(state, inputs)) is not restriction.wanted for restriction in starting
+            bool(restriction.condition.compute(state, inputs)) is not restriction.value for restriction in starting
         )
 
     reads = frozenset().union(*(restriction.condition.reads for restriction in starting))
@@ -608,8 +610,8 @@ def _first(
 def _following(
     slot: Slot, ways: Mapping[str, Sequence[_Way]], reads: frozenset[Slot], source: ex.Located
 ) -> Participant:
-    def step(state: Mapping[Slot, Value], inputs: Mapping[str, Value]) -> Taken:
+    def step(state: Mapping[Slot, Value], inputs: Mapping[str, Value]) -> EventEffect:
         way = _first(slot, ways, state, inputs)
-        return Taken({}, source) if way is None else Taken({slot: way[1]}, way[2])
+        return EventEffect({}, source) if way is None else EventEffect({slot: way[1]}, way[2])
 
     return Participant(step, reads, source)

@@ -6,17 +6,17 @@ from typing import TYPE_CHECKING
 
 from robosc.base.diagnostics import Severity
 from robosc.language.checks.definitions import of_kind
+from robosc.language.checks.edits import Choice, Insertion, Removal, Renaming, Replacement, Together, part_of
 from robosc.language.checks.facts import fact
 from robosc.language.checks.libraries import instances, reachable
-from robosc.language.checks.mending import Choice, Insertion, Removal, Renaming, Replacement, Together, part_of
 from robosc.language.checks.rule import Finding, rule
 from robosc.model import robosc as rsc
-from robosc.model.semantics.naming import written
+from robosc.model.semantics.naming import escape_keyword
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from robosc.language.checks.mending import Hint
+    from robosc.language.checks.edits import Hint
     from robosc.model import expression as ex
     from robosc.model.semantics.instances import PortInstance
 
@@ -147,5 +147,5 @@ def _own_topic(port: PortInstance, base: rsc.Base) -> Hint:
         string = part_of(place.computedIdentifier) if place.computedIdentifier else part_of(place).end()
         return Replacement(hint, f'"{topic}"', string, is_choice=True)
     if imported.remappings:
-        return Insertion(hint, f'{written(name)}: "{topic}", ', imported.remappings[0], is_choice=True)
-    return Insertion(hint, f' with {{ {written(name)}: "{topic}" }}', imported, behind=True, is_choice=True)
+        return Insertion(hint, f'{escape_keyword(name)}: "{topic}", ', imported.remappings[0], is_choice=True)
+    return Insertion(hint, f' with {{ {escape_keyword(name)}: "{topic}" }}', imported, behind=True, is_choice=True)

@@ -5,18 +5,18 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.language.checks.definitions import circles, communications, of_kind
-from robosc.language.checks.mending import Choice, Removal, Replacement
+from robosc.language.checks.edits import Choice, Removal, Replacement
 from robosc.language.checks.rule import Finding, rule
 from robosc.model import robosc as rsc
-from robosc.model.semantics.communication import carried, sent_type
+from robosc.model.semantics.communication import carrying_events, sent_type
 from robosc.model.semantics.failures import FAILURE, is_failure
-from robosc.model.semantics.naming import written
+from robosc.model.semantics.naming import escape_keyword
 from robosc.model.semantics.typing import NONE, ArrayType, EnumType, declared_type
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from robosc.language.checks.mending import Hint
+    from robosc.language.checks.edits import Hint
 
 _BASIC = ("boolean", "integer", "double", "string")
 
@@ -28,7 +28,7 @@ def data_type(base: rsc.Base) -> Iterator[Finding]:
         yield from _base_of(enum)
     yield from _endless(base)
     for communication in communications(base):
-        for _, declared in carried(communication):
+        for _, declared in carrying_events(communication):
             if _has_failure(declared, set()):
                 yield Finding(
                     declared,
@@ -76,32 +76,32 @@ def _sent_as(sent: rsc.DataType) -> Hint:
 
 def _without_enum(hint: str, declared: rsc.ComplexDataTypeReference) -> Replacement | None:
     """Return a hint that replaces an enum by its base type."""
-    found: rsc.DataType | None = declared
+    base_type: rsc.DataType | None = declared
     seen = set()
-    while isinstance(found, rsc.ComplexDataTypeReference) and isinstance(found.type, rsc.EnumDataType):
-        if found.type in seen:
+    while isinstance(base_type, rsc.ComplexDataTypeReference) and isinstance(base_type.type, rsc.EnumDataType):
+        if base_type.type in seen:
             return None
-        seen.add(found.type)
-        found = found.type.type
-    return Replacement(hint, _text(found), declared, is_choice=True) if found is not None else None
+        seen.add(base_type.type)
+        base_type = base_type.type.type
+    return Replacement(hint, _text(base_type), declared, is_choice=True) if base_type is not None else None
 
 
 def _base_of(enum: rsc.EnumDataType) -> Iterator[Finding]:
-    found = declared_type(enum.type)
+    base_type = declared_type(enum.type)
     repair: Hint | None = None
-    if isinstance(found, EnumType):
-        repair = f"declare it from the type that `{found.definition.name}` is from"
+    if isinstance(base_type, EnumType):
+        repair = f"declare it from the type that `{base_type.definition.name}` is from"
         if isinstance(enum.type, rsc.ComplexDataTypeReference):
             repair = _without_enum(repair, enum.type) or repair
-    elif isinstance(found, ArrayType):
+    elif isinstance(base_type, ArrayType):
         repair = "declare it from the object that has the array, and read elements by `value.….[0]`"
-    elif found == NONE:
+    elif base_type == NONE:
         repair = Choice(
             "declare it from `boolean`, `integer`, `double`, `string` or an object",
             tuple(Replacement(f"declare it from `{name}`", name, enum.type) for name in _BASIC),
         )
     if repair:
-        what = {EnumType: "another enum", ArrayType: "an array"}.get(type(found), "no data")
+        what = {EnumType: "another enum", ArrayType: "an array"}.get(type(base_type), "no data")
         yield Finding(
             enum.type,
             f"enum `{enum.name}` is from {what}, expected boolean, integer, double, string or an object",
@@ -167,5 +167,5 @@ def _text(declared: rsc.DataType) -> str:
         case rsc.InterfaceTypeReference():
             return f"{declared.package}/{declared.rosType}"
         case rsc.ComplexDataTypeReference() if declared.type is not None:
-            return written(declared.type.name)
+            return escape_keyword(declared.type.name)
     return str(declared_type(declared))

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.language.checks.definitions import behaviours, common_transitions, of_kind, transitions
+from robosc.language.checks.edits import Replacement
 from robosc.language.checks.libraries import instances, meanings
-from robosc.language.checks.mending import Replacement
 from robosc.language.checks.rule import Finding, rule
 from robosc.model import robosc as rsc
 from robosc.model.semantics.durations import (
@@ -46,14 +46,14 @@ def duration(base: rsc.Base) -> Iterator[Finding]:
         for transition in of_kind(rsc.TimedTransition, [transition for _, transition in transitions(meaning)]):
             access = set_on_robot(transition.duration)
             if access is not None:
-                yield from _set(transition, instances(base).parameter(access, meaning.made), meaning)
+                yield from _set(transition, instances(base).parameter(access, meaning.instance), meaning)
                 continue
             (value,) = meaning.values(transition.duration)
-            found = None if value is None else milliseconds(transition, meaning.made)
-            if found is not None and not SHORTEST <= found <= LONGEST:
+            length = None if value is None else milliseconds(transition, meaning.instance)
+            if length is not None and not SHORTEST <= length <= LONGEST:
                 yield meaning.finding(
                     transition.duration or transition,
-                    f"this time is {_TOO_LONG if found > LONGEST else _TOO_SHORT}, expected {_EXPECTED}",
+                    f"this time is {_TOO_LONG if length > LONGEST else _TOO_SHORT}, expected {_EXPECTED}",
                     _UNITS,
                 )
 
@@ -65,10 +65,10 @@ def _set(transition: rsc.TimedTransition, owned: InstanceParameter, meaning: Mea
     if low is not None and high is not None:
         shortest, longest = (set_milliseconds(bound, UNITS[transition.unit]) for bound in (low, high))
         if shortest < SHORTEST or longest > LONGEST:
-            found = _TOO_SHORT if shortest < SHORTEST else _TOO_LONG
-            message = f"`{parameter.name}` may be set to {low}..{high} {unit}, some of it {found}, expected {_EXPECTED}"
+            fault = _TOO_SHORT if shortest < SHORTEST else _TOO_LONG
+            message = f"`{parameter.name}` may be set to {low}..{high} {unit}, some of it {fault}, expected {_EXPECTED}"
             yield meaning.finding(transition.duration or transition, message, f"narrow its range; {_UNITS}")
-    elif meaning.made is None and parameter.lowest is None and declared_type(parameter.type) == DOUBLE:
+    elif meaning.instance is None and parameter.lowest is None and declared_type(parameter.type) == DOUBLE:
         yield Finding(
             transition.duration or transition,
             f"parameter `{parameter.name}` has no range, expected one within {_EXPECTED}",

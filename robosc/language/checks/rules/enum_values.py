@@ -5,16 +5,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.language.checks.definitions import of_kind, unit_of
+from robosc.language.checks.edits import Insertion, Removal, Renaming, part_of
 from robosc.language.checks.facts import fact
 from robosc.language.checks.libraries import imports, instances, reachable
-from robosc.language.checks.mending import Insertion, Removal, Renaming, part_of
 from robosc.language.checks.rule import Finding, rule
 from robosc.model import robosc as rsc
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from robosc.language.checks.mending import Hint
+    from robosc.language.checks.edits import Hint
     from robosc.model.semantics.instances import Instance
 
 
@@ -78,8 +78,8 @@ def enum_state_overlap(base: rsc.Base) -> Iterator[Finding]:
 
 
 def _overlaps(library: rsc.Library) -> set[tuple[rsc.EnumValue, rsc.State]]:
-    found = [state for instance in instances(library) for state in instance.states]
-    return {(value, state) for value in _reachable_values(library) for state in found if value.name == state.name}
+    states = [state for instance in instances(library) for state in instance.states]
+    return {(value, state) for value in _reachable_values(library) for state in states if value.name == state.name}
 
 
 def _import(base: rsc.Base, instance: Instance, unit: rsc.Base) -> rsc.Component:

@@ -16,12 +16,12 @@ from robosc.language.checks.definitions import (
     transitions,
     variables,
 )
+from robosc.language.checks.edits import Choice, Replacement
 from robosc.language.checks.expression_types import CONSTANT, ENUM_RULE, ExpressionCheck, Place, Restriction
-from robosc.language.checks.mending import Choice, Replacement
 from robosc.language.checks.rule import Finding, rule
 from robosc.model import expression as ex
 from robosc.model import robosc as rsc
-from robosc.model.semantics.communication import is_error, meant
+from robosc.model.semantics.communication import is_error, port_event_of
 from robosc.model.semantics.durations import set_on_robot
 from robosc.model.semantics.typing import (
     BOOLEAN,
@@ -65,9 +65,9 @@ def types(base: rsc.Base) -> Iterator[Finding]:
         yield from _constant(identified.computedIdentifier, STRING, "an identifier")
     for declared in variables(base):
         check = ExpressionCheck(CONSTANT)
-        kept = isinstance(declared_type(declared.type), ArrayType | ObjectType)
-        wanted = UNKNOWN if kept else _variable_type(declared)  # `variable-type` reports initial values here.
-        check.expect(declared.initial, wanted, f"the initial value of `{declared.name}`")
+        is_stored = isinstance(declared_type(declared.type), ArrayType | ObjectType)
+        expected = UNKNOWN if is_stored else _variable_type(declared)  # `variable-type` reports initial values here.
+        check.expect(declared.initial, expected, f"the initial value of `{declared.name}`")
         yield from check.findings
     for _, transition in transitions(base):
         yield from _transition(transition)
@@ -86,7 +86,7 @@ def _requirements(base: rsc.Base) -> Iterator[Finding]:
             yield from _boolean(claimed.premise, "the condition after `from`", _REQUIREMENT)
     for automaton in statements(rsc.AutomatonRequirement, base):
         for transition in (transition for state in automaton.states for transition in state.transitions):
-            has_reason = transition.event is not None and is_error(meant(transition.event))
+            has_reason = transition.event is not None and is_error(port_event_of(transition.event))
             place = replace(_REQUIREMENT, has_reason=has_reason)
             yield from _boolean(transition.guard, "the condition after `if`", place)
 
@@ -113,18 +113,18 @@ def _named(named: rsc.NamedExpression) -> Iterator[Finding]:
 
 
 def _of_one_value(declared: rsc.DataType | None, what: str) -> Iterator[Finding]:
-    found = declared_type(declared)
-    if declared is not None and (found == NONE or isinstance(found, ArrayType | ObjectType)):
+    actual = declared_type(declared)
+    if declared is not None and (actual == NONE or isinstance(actual, ArrayType | ObjectType)):
         hint = "write `boolean`, `integer`, `double`, `string` or the name of an enum"
         ways = tuple(
             Replacement(f"write `{name}`", name, declared) for name in ("boolean", "integer", "double", "string")
         )
-        yield Finding(declared, f"{what} is of type {found}, expected a type of one value", Choice(hint, ways))
+        yield Finding(declared, f"{what} is of type {actual}, expected a type of one value", Choice(hint, ways))
 
 
-def _constant(value: ex.Expression | None, wanted: Type, what: str) -> Iterator[Finding]:
+def _constant(value: ex.Expression | None, expected: Type, what: str) -> Iterator[Finding]:
     check = ExpressionCheck(replace(CONSTANT, what=what))
-    check.expect(value, wanted, what)
+    check.expect(value, expected, what)
     yield from check.findings
 
 
@@ -143,7 +143,7 @@ def _provide(statement: rsc.ProvideStatement) -> Iterator[Finding]:
     communication = communication_of(statement.communicationType)
     check = ExpressionCheck(_PROVIDE)
     what = f"the data of `{communication.name}`" if communication else "the data"
-    check.provided(statement.data, provided_data_type(communication), what)
+    check.expect_data(statement.data, provided_data_type(communication), what)
     yield from check.findings
     yield from _boolean(statement.condition, "the condition of a provide statement", _PROVIDE)
 
@@ -166,8 +166,8 @@ def _transition(transition: rsc.Transition) -> Iterator[Finding]:
         check = ExpressionCheck(place)
         if variable is not None:
             check.type(assignment.item)
-            wanted = UNKNOWN if assignment.item.segments else _variable_type(variable)
-            check.expect(assignment.value, wanted, f"a value for `{variable.name}`")
+            expected = UNKNOWN if assignment.item.segments else _variable_type(variable)
+            check.expect(assignment.value, expected, f"a value for `{variable.name}`")
         else:
             check.type(assignment.value)
         yield from check.findings
@@ -175,10 +175,10 @@ def _transition(transition: rsc.Transition) -> Iterator[Finding]:
 
 def _duration(value: ex.Expression | None) -> Iterator[Finding]:
     check = ExpressionCheck(Place(None) if set_on_robot(value) else replace(CONSTANT, what="a duration"))
-    found = check.type(value)
-    if value is not None and found not in {INTEGER, DOUBLE, UNKNOWN}:
+    actual = check.type(value)
+    if value is not None and actual not in {INTEGER, DOUBLE, UNKNOWN}:
         hint = Replacement("write a number, such as `3.0 s`", "3.0", value, is_choice=True)
-        check.report(value, f"a duration must be integer or double, found {found}", hint)
+        check.report(value, f"a duration must be integer or double, found {actual}", hint)
     yield from check.findings
 
 

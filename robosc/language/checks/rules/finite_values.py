@@ -15,15 +15,15 @@ from robosc.language.checks.definitions import (
     transitions,
     variables,
 )
+from robosc.language.checks.edits import Choice, Removal, Replacement, Together, part_of
 from robosc.language.checks.libraries import Meaning, meanings
-from robosc.language.checks.mending import Choice, Removal, Replacement, Together, part_of
 from robosc.language.checks.rule import Finding, rule
-from robosc.language.checks.supervised import Fault, function_faults, readings, supervised_faults, table_faults
+from robosc.language.checks.supervisor_limits import Fault, function_faults, readings, supervised_faults, table_faults
 from robosc.model import robosc as rsc
 from robosc.model.semantics.communication import sent_type
 from robosc.model.semantics.cone_of_influence import ConeOfInfluence, accesses
 from robosc.model.semantics.expansion import CLAMP
-from robosc.model.semantics.inputs import Computed, Data, property_path
+from robosc.model.semantics.inputs import ComputedValue, Data, property_path
 from robosc.model.semantics.instances import MOST
 from robosc.model.semantics.printing import RoboscPrinter
 from robosc.model.semantics.typing import (
@@ -42,9 +42,9 @@ from robosc.model.semantics.typing import (
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from robosc.language.checks.mending import Hint
+    from robosc.language.checks.edits import Hint
     from robosc.model import expression as ex
-    from robosc.model.semantics.cone_of_influence import Reading
+    from robosc.model.semantics.cone_of_influence import InputRead
     from robosc.model.semantics.instances import Instances
 
 LEAST, LARGEST = INTEGER_RANGES["int64"]
@@ -55,8 +55,8 @@ def variable_type(base: rsc.Base) -> Iterator[Finding]:
     """Each variable holds one value; those that the supervisor needs have a finite type and finite data."""
     stored = _stored(base)
     for variable in variables(base):
-        found = declared_type(variable.type)
-        if found == NONE:
+        value_type = declared_type(variable.type)
+        if value_type == NONE:
             yield Finding(
                 variable,
                 f"variable `{variable.name}` has no value, expected data",
@@ -68,18 +68,20 @@ def variable_type(base: rsc.Base) -> Iterator[Finding]:
                     ),
                 ),
             )
-        elif isinstance(found, ArrayType | ObjectType):
-            starts = "an array starts empty" if isinstance(found, ArrayType) else "each field starts as a variable does"
+        elif isinstance(value_type, ArrayType | ObjectType):
+            starts = (
+                "an array starts empty" if isinstance(value_type, ArrayType) else "each field starts as a variable does"
+            )
             if variable.initial is not None:
-                message = f"variable `{variable.name}` is {found} and takes no initial value: {starts}"
+                message = f"variable `{variable.name}` is {value_type} and takes no initial value: {starts}"
                 hint = Removal(
                     f"write `variable {variable.name}: …` without `=`",
                     part_of(variable.initial).preceded_by("="),
                     is_choice=False,
                 )
                 yield Finding(variable.initial, message, hint)
-            if _has_objects(found) and variable not in stored:
-                message = f"variable `{variable.name}` is {found}, and no event stores anything in it"
+            if _has_objects(value_type) and variable not in stored:
+                message = f"variable `{variable.name}` is {value_type}, and no event stores anything in it"
                 yield Finding(
                     variable,
                     message,
@@ -91,8 +93,8 @@ def variable_type(base: rsc.Base) -> Iterator[Finding]:
     yield from supervised_faults(base, function_faults)
 
 
-def _has_objects(found: Type) -> bool:
-    return isinstance(found, ObjectType) or (isinstance(found, ArrayType) and _has_objects(found.element))
+def _has_objects(kind: Type) -> bool:
+    return isinstance(kind, ObjectType) or (isinstance(kind, ArrayType) and _has_objects(kind.element))
 
 
 def _stored(base: rsc.Base) -> set[rsc.Variable]:
@@ -101,19 +103,21 @@ def _stored(base: rsc.Base) -> set[rsc.Variable]:
         (variable, value)
         for _, transition in transitions(base)
         # If a transition assigns a variable several times, the last assignment takes effect.
-        for variable, value in {assigned_variable(given): given.value for given in transition.assignments}.items()
+        for variable, value in {
+            assigned_variable(assignment): assignment.value for assignment in transition.assignments
+        }.items()
     ]
-    found: set[rsc.Variable] = set()
+    stored: set[rsc.Variable] = set()
     more = True
     while more:
         reached = {
             variable
             for variable, value in assigned
-            if variable is not None and any(access.value or access.item in found for access in accesses(value))
+            if variable is not None and any(access.value or access.item in stored for access in accesses(value))
         }
-        more = not reached <= found
-        found |= reached
-    return found
+        more = not reached <= stored
+        stored |= reached
+    return stored
 
 
 #: Repair for a variable of the node with too many values.
@@ -122,19 +126,19 @@ _KEPT_REPAIR = "store the relevant part in a variable, such as `do some := size(
 
 def _without_domain(_: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
     for owned, reason in result.variables.items():
-        found = declared_type(owned.type)
-        if found in {DOUBLE, STRING} or isinstance(found, ArrayType | ObjectType):
+        value_type = declared_type(owned.type)
+        if value_type in {DOUBLE, STRING} or isinstance(value_type, ArrayType | ObjectType):
             name = f"{owned.instance.name}.{owned.variable.name}"
             yield Fault(
                 owned.variable,
                 reason,
-                f"variable `{name}` is {found}, and the supervisor needs it, expected boolean, an integer with a range"
-                " or an enum: its states are finitely many",
-                _KEPT_REPAIR if isinstance(found, ArrayType | ObjectType) else _enum_repair(str(found)),
+                f"variable `{name}` is {value_type}, and the supervisor needs it, expected boolean, "
+                "an integer with a range or an enum: its states are finitely many",
+                _KEPT_REPAIR if isinstance(value_type, ArrayType | ObjectType) else _enum_repair(str(value_type)),
             )
     for reading in readings(result):
         access = reading.reason.access
-        if reading.told is not None or not isinstance(access, rsc.Access):
+        if reading.source is not None or not isinstance(access, rsc.Access):
             continue
         types = access_types(access, reading.value)
         is_array = any(isinstance(kind, ArrayType) for kind in types)
@@ -151,7 +155,7 @@ def _without_domain(_: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
             )
 
 
-def _needed(reading: Reading) -> str:
+def _needed(reading: InputRead) -> str:
     variable = reading.reason.variable
     return "this guard" if variable is None else f"`{variable.variable.name}`, which the supervisor needs,"
 
@@ -190,7 +194,7 @@ def integer_range(base: rsc.Base) -> Iterator[Finding]:
 def _parameters(meaning: Meaning) -> Iterator[Finding]:
     """Report integer parameters without a range and values outside of a parameter's range."""
     for parameter in statements(rsc.Parameter, meaning):
-        if meaning.made is None and declared_type(parameter.type) == INTEGER and _is_unranged(parameter.type):
+        if meaning.instance is None and declared_type(parameter.type) == INTEGER and _is_unranged(parameter.type):
             yield Finding(
                 parameter.type,
                 f"parameter `{parameter.name}` is an integer without range, expected the values that can be set",
@@ -198,7 +202,7 @@ def _parameters(meaning: Meaning) -> Iterator[Finding]:
                     "write a range, such as `integer(0..100)`", "integer(0..100)", parameter.type, is_choice=True
                 ),
             )
-        elif meaning.made is None and parameter.lowest is not None and declared_type(parameter.type) != DOUBLE:
+        elif meaning.instance is None and parameter.lowest is not None and declared_type(parameter.type) != DOUBLE:
             message = f"parameter `{parameter.name}` is {declared_type(parameter.type)} and has no range"
             yield Finding(parameter.lowest, message, _unranged(parameter))
         low, value, high = meaning.values(parameter.lowest, parameter.value, parameter.highest)
@@ -262,13 +266,13 @@ def _without_range(_: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
                 ),
             )
     for reading in readings(result):
-        told = reading.told
-        if not isinstance(told, Computed) or told.type != INTEGER or told.bounds is not None:
+        source = reading.source
+        if not isinstance(source, ComputedValue) or source.type != INTEGER or source.bounds is not None:
             continue
         element: ex.Located = reading.part
         hint: Hint = "compare it with a literal, or assign it unchanged to a variable, which limits its range"
         path = property_path(reading.part) if isinstance(reading.part, rsc.Access) else None
-        declared = None if path is None else Data(told.port, told.event, path).type
+        declared = None if path is None else Data(source.port, source.event, path).type
         if _has_wrong_bounds(declared):
             continue
         if _is_unbounded(declared):
@@ -288,7 +292,7 @@ def _without_range(_: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
         yield Fault(
             element,
             reading.reason,
-            f"`{told.text}` is an integer without range, and {_needed(reading)} is computed from it"
+            f"`{source.text}` is an integer without range, and {_needed(reading)} is computed from it"
             " and others, expected a range: the supervisor's inputs have finitely many values",
             hint,
         )
@@ -306,7 +310,7 @@ def _has_wrong_bounds(declared: rsc.DataType | None) -> bool:
 def _bounds(declared: rsc.IntegerDataType, meaning: Meaning) -> tuple[int | None, int | None]:
     """Return the bounds of a range; None if they are unknown or the template's own text has them."""
     if declared.lower is None:
-        return (None, None) if meaning.made else (declared.minimum, declared.maximum)
+        return (None, None) if meaning.instance else (declared.minimum, declared.maximum)
     low, high = meaning.values(declared.lower, declared.upper)
     return (low, high) if type(low) is int and type(high) is int else (None, None)
 
@@ -339,9 +343,9 @@ def _provided(
     if not isinstance(data, rsc.ObjectValue):
         yield data, declared, name
         return
-    for given in data.properties:
-        if given.property is not None:
-            yield from _provided(given.value, given.property.type, given.property.name)
+    for field in data.properties:
+        if field.property is not None:
+            yield from _provided(field.value, field.property.type, field.property.name)
 
 
 def _outside(

@@ -7,23 +7,23 @@ from typing import TYPE_CHECKING
 from robosc.base.diagnostics import Severity
 from robosc.base.ros_types import OWN_OBJECT
 from robosc.language.checks.definitions import communications, of_kind, unit_of
+from robosc.language.checks.edits import Choice, Insertion, Removal, Renaming, Replacement
 from robosc.language.checks.libraries import imports, instances, reachable
-from robosc.language.checks.mending import Choice, Insertion, Removal, Renaming, Replacement
 from robosc.language.checks.rule import Finding, interface_rule, rule
-from robosc.language.checks.wire_data import Carried, UsedData, Uses, carried_data, carries
+from robosc.language.checks.wire_data import CommunicationData, UsedData, Uses, carried_data, carries
 from robosc.language.checks.wire_faults import Fault, Unknown, faults, misfits, wire_type
 from robosc.model import expression as ex
 from robosc.model import robosc as rsc
 from robosc.model.reflection import tree
-from robosc.model.semantics.communication import carried
-from robosc.model.semantics.naming import written
+from robosc.model.semantics.communication import carrying_events
+from robosc.model.semantics.naming import escape_keyword
 from robosc.model.semantics.typing import NONE, UNKNOWN, ObjectType, Type, declared_type
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from robosc.base.ros_types import RosTypes
-    from robosc.language.checks.mending import Hint
+    from robosc.language.checks.edits import Hint
 
 
 @rule("interface-link")
@@ -31,7 +31,7 @@ def interface_link(base: rsc.Base) -> Iterator[Finding]:
     """Objects, actions and services with data link an interface, because they have no ROS type of their own."""
     for communication in communications(base):
         if communication.interface is None:
-            types = [declared_type(wire_type(declared)) for _, declared in carried(communication)]
+            types = [declared_type(wire_type(declared)) for _, declared in carrying_events(communication)]
             reason = _reason(communication, types)
             if reason:
                 yield Finding(
@@ -63,12 +63,12 @@ def _missing_link(communication: rsc.CommunicationType, base: rsc.Base, types: l
         interface for interface in known if any(name.startswith(interface.type or interface.name) for name in objects)
     ]
     if fitting:
-        link = f"links {written(fitting[0].name)}"
+        link = f"links {escape_keyword(fitting[0].name)}"
         return Insertion(f"add `{link}` after its types", f" {link}", communication, behind=True)
     name = communication.name
     return (
-        f"declare `interface {name} use … from …` with the ROS type and its package, and add `links {written(name)}`"
-        " after its types"
+        f"declare `interface {name} use … from …` with the ROS type and its package, "
+        f"and add `links {escape_keyword(name)}` after its types"
     )
 
 
@@ -97,12 +97,12 @@ def interface_unknown(base: rsc.Base, interfaces: RosTypes) -> Iterator[Finding]
         if isinstance(data.interface.eContainer(), rsc.InterfaceTypeReference):
             continue  # The data type that links the interface has the finding.
         for fault in _unknown(data, interfaces):
-            wanted: ex.Located | None = fault.property if isinstance(fault, Fault) else data.interface
+            candidate: ex.Located | None = fault.property if isinstance(fault, Fault) else data.interface
             other = data.declared if isinstance(fault, Fault) else data.communication
-            element = wanted if wanted is not None and unit_of(wanted) is base else other
+            element = candidate if candidate is not None and unit_of(candidate) is base else other
             if (element, fault.message) not in reported:
                 reported.add((element, fault.message))
-                yield Finding(element, fault.message, _meant(fault, element))
+                yield Finding(element, fault.message, _suggestion(fault, element))
     for _, reference in tree(base):
         if isinstance(reference, rsc.InterfaceTypeReference) and isinstance(reference.eContainer(), rsc.EnumDataType):
             others = interfaces.other_kinds(reference.package, reference.rosType, "message")
@@ -116,23 +116,23 @@ def interface_unknown(base: rsc.Base, interfaces: RosTypes) -> Iterator[Finding]
                 )
 
 
-def _meant(fault: Fault | Unknown, element: ex.Located | None) -> Hint:
+def _suggestion(fault: Fault | Unknown, element: ex.Located | None) -> Hint:
     """Return the hint, with the intended type as an edit if it is known."""
     if isinstance(fault, Unknown) and fault.meant is not None and isinstance(element, rsc.Interface):
         package, name = fault.meant
-        text = f"interface {written(element.name)} use {written(name)} from {written(package)}"
+        text = f"interface {escape_keyword(element.name)} use {escape_keyword(name)} from {escape_keyword(package)}"
         return Replacement(fault.hint, text, element)
     return fault.hint
 
 
-def _unknown(data: Carried, interfaces: RosTypes) -> list[Fault] | list[Unknown]:
-    found = faults(data, interfaces, {})
-    return [found] if isinstance(found, Unknown) else [fault for fault in found if fault.unknown]
+def _unknown(data: CommunicationData, interfaces: RosTypes) -> list[Fault] | list[Unknown]:
+    mismatches = faults(data, interfaces, {})
+    return [mismatches] if isinstance(mismatches, Unknown) else [fault for fault in mismatches if fault.unknown]
 
 
 def _faulty(base: rsc.Base, interfaces: RosTypes) -> Iterator[tuple[ex.Located, str, Hint, bool]]:
     """Yield the places to change in the base's text, with message, hint, and whether the model uses the data."""
-    found: dict[tuple[ex.Located, str, Hint], bool] = {}
+    places: dict[tuple[ex.Located, str, Hint], bool] = {}
     units = {unit: list(carried_data(unit)) for unit in [base, *reachable(base, carries)]}
     everything = UsedData([base, *reachable(base)] if any(units.values()) else ())
     for unit, communicated in units.items():
@@ -151,8 +151,8 @@ def _faulty(base: rsc.Base, interfaces: RosTypes) -> Iterator[tuple[ex.Located, 
                     elif fault.text is not None and fault.property is None and element is data.declared:
                         hint = Replacement(fault.hint, fault.text, element)
                     key = (element, fault.message, hint)
-                    found[key] = found.get(key, False) or fault.is_used(uses)
-    yield from ((*key, used) for key, used in found.items())
+                    places[key] = places.get(key, False) or fault.is_used(uses)
+    yield from ((*key, used) for key, used in places.items())
 
 
 def _of_property(fault: Fault, declared: rsc.ObjectProperty) -> Hint:
@@ -163,12 +163,12 @@ def _of_property(fault: Fault, declared: rsc.ObjectProperty) -> Hint:
         return Renaming(fault.hint, declared, fault.new_name, is_choice=False)
     if fault.others is None:
         return fault.hint
-    fields = [f"{written(name)}: {kind}" for name, kind in fault.others.items()]
+    fields = [f"{escape_keyword(name)}: {kind}" for name, kind in fault.others.items()]
     ways = [Replacement(f"write `{text}`", text, declared) for text in fields]
     return Choice(fault.hint, (*ways, Removal("leave it out", declared)))
 
 
-def _place(base: rsc.Base, data: Carried, fault: Fault, uses: Uses) -> ex.Located | None:
+def _place(base: rsc.Base, data: CommunicationData, fault: Fault, uses: Uses) -> ex.Located | None:
     """Return the first of these in the base's text: the property, its use, the data that contains it."""
     use = None if fault.property is None else uses.get(fault.property)
     candidates: list[ex.Located | None] = [fault.property, use, data.declared]
@@ -182,7 +182,7 @@ def interface_mix(base: rsc.Base, interfaces: RosTypes) -> Iterator[Finding]:
     units = [base, *reachable(base, carries)]
     present = [(unit, data) for unit in units for data in carried_data(unit) if data.communication in communications]
     used = UsedData([base, *reachable(base)] if present else ())
-    first: dict[str, tuple[rsc.Base, Carried]] = {}
+    first: dict[str, tuple[rsc.Base, CommunicationData]] = {}
     for unit, data in present:
         reasons = misfits(data, interfaces, used.uses(data))
         if len(reasons) == len(interfaces.distributions):

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.base.diagnostics import Severity
 from robosc.language.checks.definitions import circles, communication_of, of_kind, statements
+from robosc.language.checks.edits import Choice, Insertion, Removal, Replacement, part_of
 from robosc.language.checks.expression_types import CONSTANT, ExpressionCheck, Place
 from robosc.language.checks.libraries import Meaning, instances, meanings
-from robosc.language.checks.mending import Choice, Insertion, Removal, Replacement, part_of
 from robosc.language.checks.rule import Finding, on_line, rule
 from robosc.language.checks.type_repairs import repair
 from robosc.model import expression as ex
@@ -20,7 +20,7 @@ from robosc.model.semantics.durations import bounds, set_on_robot
 from robosc.model.semantics.expansion import LARGEST, Expansion, constant_value, is_unreadable
 from robosc.model.semantics.failures import is_failure, reasons
 from robosc.model.semantics.instances import bound_arguments
-from robosc.model.semantics.naming import enumeration, written
+from robosc.model.semantics.naming import enumeration, escape_keyword
 from robosc.model.semantics.operators import operator_of
 from robosc.model.semantics.typing import INTEGER, UNKNOWN, declared_type, type_of
 
@@ -40,7 +40,10 @@ def cyclic_definition(base: rsc.Base) -> Iterator[Finding]:
     """No constant, condition or function refers to itself or becomes too large after expansion."""
     named = list(statements(rsc.NamedExpression, base))
     uses = {definition: _used(definition) for definition in named}
-    known = {definition: [(definition, used) for used in found if used in uses] for definition, found in uses.items()}
+    known = {
+        definition: [(definition, used) for used in used_definitions if used in uses]
+        for definition, used_definitions in uses.items()
+    }
     for definition, circle in circles(named, known.__getitem__):
         names = [step.name for step in (*circle, circle[0])]
         yield Finding(
@@ -52,11 +55,11 @@ def cyclic_definition(base: rsc.Base) -> Iterator[Finding]:
 
 
 def _used(definition: rsc.NamedExpression) -> list[Any]:
-    found = (
+    references = (
         part.item if isinstance(part, rsc.Access) else part.function if isinstance(part, rsc.Call) else None
         for _, part in tree(definition.value or definition)
     )
-    return list(dict.fromkeys(part for part in found if isinstance(part, rsc.NamedExpression)))
+    return list(dict.fromkeys(part for part in references if isinstance(part, rsc.NamedExpression)))
 
 
 def _too_large(base: rsc.Base) -> Iterator[Finding]:
@@ -89,15 +92,15 @@ def arguments(base: rsc.Base) -> Iterator[Finding]:
                     yield _wrong_number(element, element.function.name, len(element.arguments), names)
                 yield from _called(element)
             case rsc.InstantiatedComponent() | rsc.ImportedComponent() if element.definition is not None:
-                yield from _given(element, element.definition, element.arguments)
+                yield from _argument_findings(element, element.definition, element.arguments)
             case rsc.ComplexDataTypeReference() if isinstance(element.type, rsc.EnumDataType | rsc.ObjectDataType):
                 yield from _of_type(element)
     yield from _defaults(base)
     for meaning in meanings(base):
         yield from _of_enums(meaning, instances(base))
         yield from _unreadable(meaning)
-        if meaning.made is not None:
-            yield from _made(meaning)
+        if meaning.instance is not None:
+            yield from _instance_findings(meaning)
 
 
 def _reason(comparison: ex.Equation | ex.Inequation) -> Iterator[Finding]:
@@ -113,9 +116,9 @@ def _beside_reason(
     comparison: ex.Equation | ex.Inequation,
 ) -> Iterator[tuple[ex.Expression, rsc.CommunicationType | None]]:
     """Yield the other operand of each comparison with `error`, and the service or action that has failed."""
-    for read, other in ((comparison.left, comparison.right), (comparison.right, comparison.left)):
-        if isinstance(read, rsc.ErrorReason) and isinstance(other, rsc.Access | rsc.Call | ex.Conditional):
-            yield other, _failing(read)
+    for side, other in ((comparison.left, comparison.right), (comparison.right, comparison.left)):
+        if isinstance(side, rsc.ErrorReason) and isinstance(other, rsc.Access | rsc.Call | ex.Conditional):
+            yield other, _failing(side)
 
 
 def _impossible_reason(value: object, communication: rsc.CommunicationType | None) -> str | None:
@@ -145,18 +148,18 @@ def _failing(element: ex.Located) -> rsc.CommunicationType | None:
 
 
 def _called(call: rsc.Call) -> Iterator[Finding]:
-    for parameter, given in zip(call.function.parameters, call.arguments, strict=False):
-        wanted, found = declared_type(parameter.type), type_of(given)
-        if UNKNOWN not in {found, wanted} and found != wanted:
-            message = f"the argument for `{parameter.name}` must be {wanted}, found {found}"
-            yield Finding(given, message, repair(given, found, wanted))
+    for parameter, argument in zip(call.function.parameters, call.arguments, strict=False):
+        expected, actual = declared_type(parameter.type), type_of(argument)
+        if UNKNOWN not in {actual, expected} and actual != expected:
+            message = f"the argument for `{parameter.name}` must be {expected}, found {actual}"
+            yield Finding(argument, message, repair(argument, actual, expected))
 
 
 def _of_type(reference: rsc.ComplexDataTypeReference) -> Iterator[Finding]:
     named = reference.type
     keeps = isinstance(reference.eContainer(), rsc.Variable | rsc.NamedExpression | rsc.FormalParameter)
     if isinstance(named, rsc.EnumDataType) and named.parameters and not keeps:
-        yield from _given(reference, named, reference.arguments)
+        yield from _argument_findings(reference, named, reference.arguments)
     elif reference.arguments:
         what = f"a {type(reference.eContainer()).__name__.lower()}" if keeps else f"`{named.name}`"
         yield Finding(
@@ -166,35 +169,35 @@ def _of_type(reference: rsc.ComplexDataTypeReference) -> Iterator[Finding]:
         )
 
 
-def _given(
-    user: ex.Located, definition: rsc.Component | rsc.EnumDataType, given: Sequence[rsc.Argument]
+def _argument_findings(
+    user: ex.Located, definition: rsc.Component | rsc.EnumDataType, arguments: Sequence[rsc.Argument]
 ) -> Iterator[Finding]:
     """Report faults in the arguments of a template or an enum; a parameter with a default needs none."""
     parameters = list(definition.parameters)
-    found: dict[rsc.FormalParameter, rsc.Argument] = {}
+    bound: dict[rsc.FormalParameter, rsc.Argument] = {}
     named = False
-    for position, argument in enumerate(given):
+    for position, argument in enumerate(arguments):
         named = named or argument.parameter is not None
         parameter = argument.parameter or (parameters[position] if position < len(parameters) and not named else None)
         if parameter is None:
             if not named:
                 names = [parameter.name for parameter in parameters]
-                yield _wrong_number(argument, definition.name, len(given), names)
+                yield _wrong_number(argument, definition.name, len(arguments), names)
                 return
             message = "an argument without name follows one with a name"
-            yield Finding(argument, message, _naming(argument, parameters, found, given))
-        elif parameter in found:
-            message = f"parameter `{parameter.name}` has an argument already{on_line(found[parameter])}"
-            first = found[parameter]
+            yield Finding(argument, message, _naming(argument, parameters, bound, arguments))
+        elif parameter in bound:
+            message = f"parameter `{parameter.name}` has an argument already{on_line(bound[parameter])}"
+            first = bound[parameter]
             ways = (
                 Removal(f"leave this one out{on_line(argument)}", argument),
                 Removal(f"leave the other one out{on_line(first)}", first),
             )
             yield Finding(argument, message, Choice("leave one of the two out", ways), related=first)
         else:
-            found[parameter] = argument
+            bound[parameter] = argument
             yield from _typed(argument.value, parameter, settable=isinstance(definition, rsc.EnumDataType))
-    missing = [parameter for parameter in parameters if parameter not in found and parameter.default is None]
+    missing = [parameter for parameter in parameters if parameter not in bound and parameter.default is None]
     if missing:
         lacking = ", ".join(f"`{parameter.name}`" for parameter in missing)
         hint = f"write `{definition.name}({', '.join(f'{parameter.name}: ...' for parameter in missing)})`"
@@ -204,14 +207,15 @@ def _given(
 def _naming(
     argument: rsc.Argument,
     parameters: Sequence[rsc.FormalParameter],
-    found: Collection[rsc.FormalParameter],
-    given: Sequence[rsc.Argument],
+    bound: Collection[rsc.FormalParameter],
+    arguments: Sequence[rsc.Argument],
 ) -> Choice:
     """Return the parameters that an argument can be for, as a choice of names before it."""
-    named = {other.parameter for other in given}
-    free = [parameter for parameter in parameters if parameter not in found and parameter not in named]
+    named = {other.parameter for other in arguments}
+    free = [parameter for parameter in parameters if parameter not in bound and parameter not in named]
     ways = (
-        Insertion(f"write `{written(other.name)}:` before it", f"{written(other.name)}: ", argument) for other in free
+        Insertion(f"write `{escape_keyword(other.name)}:` before it", f"{escape_keyword(other.name)}: ", argument)
+        for other in free
     )
     return Choice("name its parameter", tuple(ways))
 
@@ -248,38 +252,38 @@ def _out_of_range(values: str, parameter: rsc.FormalParameter) -> tuple[str, str
     return message, "write a number that is in the range"
 
 
-def _of_enums(meaning: Meaning, made: Instances) -> Iterator[Finding]:
+def _of_enums(meaning: Meaning, known_instances: Instances) -> Iterator[Finding]:
     for definition in meaning.definitions:
         for _, element in tree(definition):
             if isinstance(element, rsc.ComplexDataTypeReference) and isinstance(element.type, rsc.EnumDataType):
-                yield from _of_enum(element, element.type, meaning, made)
+                yield from _of_enum(element, element.type, meaning, known_instances)
 
 
 def _of_enum(
-    reference: rsc.ComplexDataTypeReference, enum: rsc.EnumDataType, meaning: Meaning, made: Instances
+    reference: rsc.ComplexDataTypeReference, enum: rsc.EnumDataType, meaning: Meaning, known_instances: Instances
 ) -> Iterator[Finding]:
     """Report faults in the arguments and the divisors of an enum, with the arguments of a template around it."""
-    given = bound_arguments(enum.parameters, reference.arguments)
-    for parameter, value in given.items():
+    bound = bound_arguments(enum.parameters, reference.arguments)
+    for parameter, value in bound.items():
         access = set_on_robot(value)
         if access is None:
             (number,) = meaning.values(value)
-            if meaning.made and type(number) is int and not _fits(number, number, parameter):
+            if meaning.instance and type(number) is int and not _fits(number, number, parameter):
                 yield meaning.finding(value, *_out_of_range(str(number), parameter))
             continue
-        owned = made.parameter(access, meaning.made)
+        owned = known_instances.parameter(access, meaning.instance)
         lowest, highest = bounds(owned.parameter, None)
-        if lowest is None and meaning.made:
+        if lowest is None and meaning.instance:
             lowest, highest = bounds(owned.parameter, owned.instance)
-        elif meaning.made:
+        elif meaning.instance:
             continue  # The template's own text has the finding.
         if not _fits(lowest, highest, parameter):
             yield meaning.finding(value, *_out_of_range(f"{lowest} to {highest} on the robot", parameter))
     for row, position, divisor in _divisors(enum):
-        written = Expansion(None).argued(divisor, given)
+        written = Expansion(None).expand_with(divisor, bound)
         (number,) = meaning.values(written)
-        told = number is not None if meaning.made or _reads_parameter(written) else _reads_parameter(divisor)
-        if told and not _is_positive(number):
+        is_known = number is not None if meaning.instance or _reads_parameter(written) else _reads_parameter(divisor)
+        if is_known and not _is_positive(number):
             yield meaning.finding(reference, *_wrong_divisor(row, position))
 
 
@@ -309,17 +313,21 @@ def _defaults(base: rsc.Base) -> Iterator[Finding]:
 
 
 def _wrong_number(where: ex.Located, name: str, count: int, names: Sequence[str]) -> Finding:
-    wanted = "argument" if len(names) == 1 else "arguments"
-    return Finding(where, f"`{name}` has {len(names)} {wanted}, found {count}", f"write `{name}({', '.join(names)})`")
+    noun = "argument" if len(names) == 1 else "arguments"
+    return Finding(where, f"`{name}` has {len(names)} {noun}, found {count}", f"write `{name}({', '.join(names)})`")
 
 
 @rule("unused-template", Severity.WARNING)
 def unused_template(base: rsc.Base) -> Iterator[Finding]:
     """Every template of a robot has an instance."""
     if isinstance(base, rsc.Robot):
-        made = {instance.definition for instance in instances(base)}
+        instantiated = {instance.definition for instance in instances(base)}
         for component in of_kind(rsc.Component, base.definitions):
-            if component.parameters and isinstance(component.type, rsc.LocalComponent) and component not in made:
+            if (
+                component.parameters
+                and isinstance(component.type, rsc.LocalComponent)
+                and component not in instantiated
+            ):
                 yield Finding(
                     component,
                     f"the template `{component.name}` has no instance, so it is not part of the robot",
@@ -329,28 +337,28 @@ def unused_template(base: rsc.Base) -> Iterator[Finding]:
 
 
 def _built_in(element: ex.FunctionCall) -> Iterator[Finding]:
-    row, given = operator_of(element), list(element.arguments)
+    row, arguments = operator_of(element), list(element.arguments)
     assert row is not None
-    if len(given) != row.parameters:
-        yield _wrong_number(element, row.symbol, len(given), "abcdef"[: row.parameters])
+    if len(arguments) != row.parameters:
+        yield _wrong_number(element, row.symbol, len(arguments), "abcdef"[: row.parameters])
         return
     for position in sorted(row.divisors):
-        divisor = given[position]
+        divisor = arguments[position]
         if not _reads_parameter(divisor) and type_of(divisor) == INTEGER and not _is_positive(constant_value(divisor)):
             message, hint = _wrong_divisor(row, position)
             yield Finding(divisor, message, Replacement(hint, "10", divisor, is_choice=True))
 
 
-def _made(meaning: Meaning) -> Iterator[Finding]:
+def _instance_findings(meaning: Meaning) -> Iterator[Finding]:
     """Report divisors and reasons beside `error` that are wrong for the arguments of a template."""
-    assert meaning.made is not None
-    for _, part in tree(meaning.made.local):
+    assert meaning.instance is not None
+    for _, part in tree(meaning.instance.local):
         for other, communication in _beside_reason(part) if isinstance(part, ex.Equation | ex.Inequation) else ():
             (value,) = meaning.values(other) if _reads_parameter(other) else (None,)
             fault = _impossible_reason(value, communication)
             if fault is not None:
                 yield meaning.finding(other, fault, _possible(communication))
-    for row, position, divisor in _divisors(meaning.made.local):
+    for row, position, divisor in _divisors(meaning.instance.local):
         (value,) = meaning.values(divisor)
         if type(value) is int and value < 1:
             yield meaning.finding(divisor, *_wrong_divisor(row, position))
@@ -361,18 +369,22 @@ def _unreadable(meaning: Meaning) -> Iterator[Finding]:
 
     For an instance of a template, only those are reported that its arguments cause.
     """
-    waiting: list[Any] = list(meaning.definitions)[::-1] if meaning.made is None else [meaning.made.local]
+    waiting: list[Any] = list(meaning.definitions)[::-1] if meaning.instance is None else [meaning.instance.local]
     if not any(_may_round(part) for root in waiting for _, part in tree(root)):
         return
     while waiting:
         part = waiting.pop()
         inside = [child for _, child in contents(part)][::-1]
-        unreadable = is_unreadable(part, meaning.made) if isinstance(part, ex.Expression) else None
+        unreadable = is_unreadable(part, meaning.instance) if isinstance(part, ex.Expression) else None
         if unreadable:
-            inside = [child for child in inside if is_unreadable(child, meaning.made)]
+            inside = [child for child in inside if is_unreadable(child, meaning.instance)]
         if unreadable is None or (unreadable and inside):
             waiting += inside
-        elif unreadable and not isinstance(part, rsc.Access) and (meaning.made is None or is_unreadable(part) is None):
+        elif (
+            unreadable
+            and not isinstance(part, rsc.Access)
+            and (meaning.instance is None or is_unreadable(part) is None)
+        ):
             yield meaning.finding(part, "this rounds a value that is not a number", "write another expression")
 
 

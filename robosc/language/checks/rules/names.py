@@ -10,7 +10,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from robosc.language.checks.definitions import behaviours, components, of_kind, statements, states, variables
-from robosc.language.checks.mending import Choice, Removal, Renaming
+from robosc.language.checks.edits import Choice, Removal, Renaming
 from robosc.language.checks.rule import Finding, on_line, rule
 from robosc.model import robosc as rsc
 from robosc.model.semantics.failures import FAILURE, is_failure
@@ -138,16 +138,16 @@ def _provided_again(value: ex.Expression) -> Iterator[Finding]:
     if not isinstance(value, rsc.ObjectValue):
         return
     named: dict[rsc.ObjectProperty, rsc.ObjectPropertyValue] = {}
-    for given in value.properties:
-        first = named.setdefault(given.property, given)
-        if given.property is not None and first is not given:
-            ways = Removal("leave the first one out", first), Removal("leave the last one out", given)
+    for field in value.properties:
+        first = named.setdefault(field.property, field)
+        if field.property is not None and first is not field:
+            ways = Removal("leave the first one out", first), Removal("leave the last one out", field)
             yield Finding(
-                given,
-                f"property `{given.property.name}` has a value already, expected one for each property",
+                field,
+                f"property `{field.property.name}` has a value already, expected one for each property",
                 Choice("leave one of the two out", ways),
             )
-        yield from _provided_again(given.value)
+        yield from _provided_again(field.value)
 
 
 @rule("single-behaviour")

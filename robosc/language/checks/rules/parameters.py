@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.language.checks.rule import Finding, rule
-from robosc.language.checks.supervised import Fault, supervised_accesses, supervised_faults
+from robosc.language.checks.supervisor_limits import Fault, supervised_accesses, supervised_faults
 from robosc.model import robosc as rsc
-from robosc.model.semantics.cone_of_influence import Reason
+from robosc.model.semantics.cone_of_influence import NeedReason
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -27,7 +27,7 @@ def _read(instances: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
         if isinstance(access.item, rsc.Parameter):
             yield Fault(
                 access,
-                Reason(access, where.within, where.variable),
+                NeedReason(access, where.within, where.variable),
                 f"parameter `{access.item.name}` is set on the robot, and the supervisor is proven for each of its"
                 " values, expected no parameter in expressions of the supervisor",
                 "compare it with `value` when data arrives, or declare a `constant`",

@@ -12,17 +12,17 @@ from robosc.language.checks.definitions import (
     statements,
     transitions,
 )
+from robosc.language.checks.edits import Choice, Removal, part_of
 from robosc.language.checks.libraries import instances
-from robosc.language.checks.mending import Choice, Removal, part_of
 from robosc.language.checks.rule import Finding, rule
 from robosc.model import robosc as rsc
 from robosc.model.semantics.cone_of_influence import accesses
-from robosc.model.semantics.naming import written
+from robosc.model.semantics.naming import escape_keyword
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from robosc.language.checks.mending import Way
+    from robosc.language.checks.edits import Way
     from robosc.model import expression as ex
 
 
@@ -76,15 +76,15 @@ def _with_every_tick(hint: str, message: rsc.Message, *, is_choice: bool = False
 
 def _readers(base: rsc.Base) -> Iterator[Finding]:
     """Report expressions outside of requirements that read a requirement automaton, also through definitions."""
-    found = instances(base)
-    for instance in found:
+    known = instances(base)
+    for instance in known:
         for transition, _ in instance.transitions:
             if isinstance(transition, rsc.TauTransition) and transition.guard is not None:
-                yield from _reading(transition.guard, found.expanded(transition.guard, instance), "a guard")
-    for statement in found.statements(rsc.ProvideStatement):
+                yield from _reading(transition.guard, known.expanded(transition.guard, instance), "a guard")
+    for statement in known.statements(rsc.ProvideStatement):
         condition = statement.element.condition
         if condition is not None:
-            expanded = found.expanded(condition, statement.within)
+            expanded = known.expanded(condition, statement.within)
             yield from _reading(condition, expanded, "the condition of a provide statement")
     for _, transition in transitions(base):
         for assignment in transition.assignments:
@@ -93,9 +93,9 @@ def _readers(base: rsc.Base) -> Iterator[Finding]:
 
 def _reading(expression: ex.Expression | None, expanded: ex.Expression | None, what: str) -> Iterator[Finding]:
     items = (access.item for access in accesses(expanded))
-    read = next((item for item in items if isinstance(item, rsc.RequirementState)), None)
-    if read is not None and expression is not None:
-        name = f"{written(read.eContainer().name)}.{written(read.name)}"
+    state = next((item for item in items if isinstance(item, rsc.RequirementState)), None)
+    if state is not None and expression is not None:
+        name = f"{escape_keyword(state.eContainer().name)}.{escape_keyword(state.name)}"
         yield Finding(
             expression,
             f"{what} reads `{name}`, a state of a requirement, expected states and variables of components only",

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.language.checks.definitions import communication_of, restricted_events, statements
-from robosc.language.checks.mending import Choice, Removal, Replacement, part_of
+from robosc.language.checks.edits import Choice, Removal, Replacement, part_of
 from robosc.language.checks.rule import Finding, rule
 from robosc.model import robosc as rsc
-from robosc.model.semantics.communication import sent
-from robosc.model.semantics.naming import written
+from robosc.model.semantics.communication import sending_event
+from robosc.model.semantics.naming import escape_keyword
 from robosc.model.semantics.typing import NONE, provided_data_type
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ _NAMELESS = "name what it restricts, or leave the requirement out"
 
 
 def _as_incoming(communication: rsc.CommunicationType) -> Replacement:
-    name = written(communication.name)
+    name = escape_keyword(communication.name)
     return Replacement(f"declare `incoming message {name}`", "incoming", part_of(communication).find("outgoing"))
 
 
@@ -32,7 +32,7 @@ def data_provisioning(base: rsc.Base) -> Iterator[Finding]:
     """Each `provide` names a communication that the controller sends with data."""
     for statement in statements(rsc.ProvideStatement, base):
         communication = communication_of(statement.communicationType)
-        if communication is not None and sent(communication) is None:
+        if communication is not None and sending_event(communication) is None:
             yield Finding(
                 statement.communicationType,
                 f"data is provided to `{communication.name}`, which the controller receives, expected a communication"
@@ -71,7 +71,7 @@ def requirement_target(base: rsc.Base) -> Iterator[Finding]:
             )
         for reference in requirement.target.communicationTypes:
             communication = communication_of(reference)
-            if communication is not None and sent(communication) is None:
+            if communication is not None and sending_event(communication) is None:
                 yield Finding(
                     reference,
                     f"`{communication.name}` comes from its component at any time, expected a communication"

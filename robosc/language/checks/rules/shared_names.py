@@ -9,7 +9,7 @@ from robosc.language.checks.libraries import instances
 from robosc.language.checks.rule import Finding, rule
 from robosc.model import robosc as rsc
 from robosc.model.semantics.communication import ros_type, sent_type
-from robosc.model.semantics.naming import written
+from robosc.model.semantics.naming import escape_keyword
 from robosc.model.semantics.printing import RoboscPrinter
 
 if TYPE_CHECKING:
@@ -66,19 +66,19 @@ def indistinct_commands(base: rsc.Base) -> Iterator[Finding]:
                 _place(second),
                 f"{_described(first)} and {_described(second)} go to the topic `{_name(second)}` and {why}: the robot"
                 " cannot tell them apart",
-                f"provide other data with `{written(second.communication.name)}`, or use one message for both",
+                f"provide other data with `{escape_keyword(second.communication.name)}`, or use one message for both",
                 related=first.communication,
             )
 
 
 def _statements(port: PortInstance, known: Instances) -> tuple[tuple[str, str], ...]:
     """Return the data and the condition of each effective `provide` for a command, with names expanded."""
-    found = []
-    for statement in known.provided(port):
+    statements = []
+    for statement in known.provide_statements(port):
         data, condition = statement.element.data, statement.element.condition
         shown = _shown(data, statement.within, known) if data is not None else ""
-        found.append((shown, "" if condition is None else _shown(condition, statement.within, known)))
-    return tuple(found)
+        statements.append((shown, "" if condition is None else _shown(condition, statement.within, known)))
+    return tuple(statements)
 
 
 def _shown(expression: ex.Expression, within: Instance | None, known: Instances) -> str:
@@ -116,8 +116,8 @@ def _ports(known: Instances, kind: type[rsc.CommunicationType]) -> Iterator[Port
 
 def _place(port: PortInstance) -> ex.Located:
     """Return the place of a communication: its component if imported or instantiated, else its declaration."""
-    made = port.instance.component is not port.instance.definition
-    return port.instance.component if made else port.communication
+    is_instance = port.instance.component is not port.instance.definition
+    return port.instance.component if is_instance else port.communication
 
 
 def _described(port: PortInstance) -> str:

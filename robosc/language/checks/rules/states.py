@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from robosc.language.checks.automata import initial_states, one_initial, start_of
 from robosc.language.checks.definitions import behaviours, common_transitions, states
-from robosc.language.checks.mending import Choice, Insertion, part_of
+from robosc.language.checks.edits import Choice, Insertion, part_of
 from robosc.language.checks.rule import Finding, rule
 from robosc.model import robosc as rsc
 
@@ -99,11 +99,11 @@ def _rest(hint: str, states: Iterable[rsc.State]) -> Choice:
 
 
 def _closure(start: Iterable[rsc.State], edges: Mapping[rsc.State, Iterable[rsc.State]]) -> set[rsc.State]:
-    found = set(start)
-    queue = list(found)
+    reached = set(start)
+    queue = list(reached)
     while queue:
         for target in edges[queue.pop()]:
-            if target not in found:
-                found.add(target)
+            if target not in reached:
+                reached.add(target)
                 queue.append(target)
-    return found
+    return reached

@@ -19,16 +19,16 @@ from robosc.language.checks.definitions import (
     states,
     transitions,
 )
-from robosc.language.checks.mending import Choice, Part, Removal, Replacement, part_of
+from robosc.language.checks.edits import Choice, Part, Removal, Replacement, part_of
 from robosc.language.checks.rule import Finding, on_line, rule
 from robosc.model import robosc as rsc
 from robosc.model.semantics.communication import event_names
-from robosc.model.semantics.naming import enumeration, written
+from robosc.model.semantics.naming import enumeration, escape_keyword
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from robosc.language.checks.mending import Hint, Way
+    from robosc.language.checks.edits import Hint, Way
 
 _Event: TypeAlias = "tuple[rsc.Component | None, rsc.CommunicationType, str]"
 
@@ -51,7 +51,7 @@ def result_type(base: rsc.Base) -> Iterator[Finding]:
         if communication is not None and event not in allowed:
             prepositions = {name: "to" if name == "request" else "from" for name in allowed}
             forms = {
-                f"on {name} {word} ": f"`on {name} {word} {written(communication.name)}`"
+                f"on {name} {word} ": f"`on {name} {word} {escape_keyword(communication.name)}`"
                 for name, word in prepositions.items()
             }
             ways: list[Way] = [
@@ -62,7 +62,7 @@ def result_type(base: rsc.Base) -> Iterator[Finding]:
             hint = f"write {enumeration(forms.values())}"
             if isinstance(communication, rsc.Message) and event in _SENT_BY:
                 opposite, sender = _SENT_BY[event]
-                declared = f"declare it as `{opposite} message {written(communication.name)}`"
+                declared = f"declare it as `{opposite} message {escape_keyword(communication.name)}`"
                 hint += f", or, if {sender} sends it, {declared}"
                 direction_word = part_of(communication).find(str(communication.direction))
                 ways.append(Replacement(declared, opposite, direction_word))
@@ -253,7 +253,7 @@ def _assignments(transition: rsc.Transition) -> Part:
 def _repair(target: rsc.Access, component: rsc.Component, transition: rsc.Transition) -> Hint:
     item = target.item
     if isinstance(item, rsc.State) and target.component is component:
-        text = f"goto {written(item.name)}"
+        text = f"goto {escape_keyword(item.name)}"
         alone = len(transition.assignments) == 1 and transition.target is None
         return (
             Replacement(f"write `{text}`", text, _assignments(transition), is_choice=True)

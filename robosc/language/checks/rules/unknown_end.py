@@ -15,7 +15,7 @@ from robosc.model import robosc as rsc
 from robosc.model.semantics.cone_of_influence import accesses, guard_of
 from robosc.model.semantics.evaluation import evaluate
 from robosc.model.semantics.failures import STILL_RUNNING, reasons
-from robosc.model.semantics.naming import enumeration, written
+from robosc.model.semantics.naming import enumeration, escape_keyword
 from robosc.model.semantics.operators import UnreadableError, operator_of
 from robosc.model.semantics.printing import RoboscPrinter
 from robosc.model.semantics.walks import fold, operands
@@ -75,12 +75,12 @@ def _finding(
 
     `misled` maps each reason of the error to the condition and to the state in which the component then rests.
     """
-    name = written(port.communication.name)
+    name = escape_keyword(port.communication.name)
     whether = " or ".join(f"error = {reason}" for reason in misled)
     condition, state = next(iter(misled.values()))
-    read = {access.item for access in accesses(condition.condition)}
+    items = {access.item for access in accesses(condition.condition)}
     variables = [assigned_variable(assignment) for assignment in transition.assignments]
-    variable = next((variable for variable in variables if variable is not None and variable in read), None)
+    variable = next((variable for variable in variables if variable is not None and variable in items), None)
     target = transition.target
     if variable is not None or target is None:
         does = f"assigns `{variable.name}`" if variable is not None else "assigns a variable"
@@ -114,7 +114,7 @@ def _reasons_left(
     """
     within = transition.eContainer()
     common = [other for other, where in instance.transitions if where is None]
-    found: dict[rsc.State, list[str]] = {}
+    reasons_by_state: dict[rsc.State, list[str]] = {}
     for state in [within] if isinstance(within, rsc.State) else instance.states:
         tried = [other for other in [*state.transitions, *common] if _failing(other, instance, known) == port]
         for reason in STILL_RUNNING[type(port.communication)] if transition in tried else ():
@@ -122,8 +122,8 @@ def _reasons_left(
             earlier = tried[: tried.index(transition)]
             taken = any(here.holds(guard_of(other)) is True and not _may_be_unreadable(other) for other in earlier)
             if not taken and here.holds(transition.guard) is not False:
-                found.setdefault(state, []).append(reason)
-    return found
+                reasons_by_state.setdefault(state, []).append(reason)
+    return reasons_by_state
 
 
 def _may_be_unreadable(transition: rsc.Transition) -> bool:
@@ -178,8 +178,8 @@ def _makes_true(condition: CommandCondition, before: _Situation, after: _Situati
     if len(parts) > _MOST:
         return True
     for values in product((False, True), repeat=len(parts)):
-        given = dict(zip(parts, values, strict=True))
-        if _truth(later, given) is condition.wanted and _truth(earlier, given) is not condition.wanted:
+        assignment = dict(zip(parts, values, strict=True))
+        if _truth(later, assignment) is condition.value and _truth(earlier, assignment) is not condition.value:
             return True
     return False
 
@@ -215,7 +215,7 @@ class _Situation(NamedTuple):
         if len(parts) > _MOST:
             return None
         choices = product((False, True), repeat=len(parts))
-        values = {_truth(formula, dict(zip(parts, given, strict=True))) for given in choices}
+        values = {_truth(formula, dict(zip(parts, choice, strict=True))) for choice in choices}
         return values.pop() if len(values) == 1 else None
 
     def formula(
@@ -229,9 +229,10 @@ class _Situation(NamedTuple):
             value = self.value(part, within)
             if value is not None:
                 return bool(value)
-            read = (self.known.variable(access, within) for access in accesses(part))
+            owned_variables = (self.known.variable(access, within) for access in accesses(part))
             differs = changed is not None and any(
-                owned and owned.instance == changed.instance and owned.variable in changed.variables for owned in read
+                owned and owned.instance == changed.instance and owned.variable in changed.variables
+                for owned in owned_variables
             )
             return f"{RoboscPrinter()(part)} {when if differs else ''}"
 
@@ -243,7 +244,7 @@ class _Situation(NamedTuple):
         def read(reference: ex.Expression) -> Value:
             if isinstance(reference, rsc.ErrorReason) and self.reason is not None and reference.enumeration:
                 rules = reference.enumeration.rules
-                return next(found.value for found in rules if found.value.name == self.reason)
+                return next(rule.value for rule in rules if rule.value.name == self.reason)
             if isinstance(reference, rsc.Access) and not reference.value and not reference.segments:
                 item = reference.item
                 owner = self.known.instance(reference.component, within)
@@ -274,12 +275,12 @@ def _unknown(formula: _Formula) -> list[str]:
     return fold(combine, formula, _inside)
 
 
-def _truth(formula: _Formula, given: Mapping[str, bool]) -> bool:
+def _truth(formula: _Formula, assignment: Mapping[str, bool]) -> bool:
     def combine(part: _Formula, inside: list[bool]) -> bool:
         if isinstance(part, bool):
             return part
         if isinstance(part, str):
-            return given[part]
+            return assignment[part]
         row = operator_of(part[0])
         assert row is not None
         return bool(row.compute(*inside))

@@ -17,7 +17,7 @@ from robosc.model import robosc as rsc
 from robosc.model.semantics.communication import data_type, event
 from robosc.model.semantics.cone_of_influence import accesses
 from robosc.model.semantics.instances import InstanceVariable
-from robosc.model.semantics.naming import written
+from robosc.model.semantics.naming import escape_keyword
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -60,7 +60,7 @@ def _states_without_end(known: Instances, places: Places) -> Iterator[Finding]:
                 continue
             place = places.new(transition, instance, action)
             if place is not None:
-                name = written(action.name)
+                name = escape_keyword(action.name)
                 onwards = "" if deaf is transition.target else f" and from there to `{instance.name}.{deaf.name}`"
                 yield Finding(
                     place,
@@ -101,20 +101,20 @@ def _forbidden_ends(known: Instances, places: Places) -> Iterator[Finding]:
             missing = [str(end) for end in _END if (port, end) in named and end not in there]
             place = places.new(transition, statement.within, port.communication) if missing else None
             if place is not None:
-                name, state = written(port.communication.name), transition.target.name
+                name, state = escape_keyword(port.communication.name), transition.target.name
                 yield Finding(
                     place,
                     f"`cancel from {name}` leads to `{state}`, which forbids the {missing[0]} of `{name}`: the"
                     " controller has only requested the cancel, and the goal ends later",
-                    f"let `{written(state)}` allow `{missing[0]} from {name}`",
+                    f"let `{escape_keyword(state)}` allow `{missing[0]} from {name}`",
                     related=None if place is transition else transition,
                 )
 
 
 def _variables_read(known: Instances, places: Places) -> Iterator[Finding]:
     """Report transitions on a cancel that assign a variable which a requirement on another command reads."""
-    read = _readers(known)
-    for instance in known if read else ():
+    readers_by_variable = _readers(known)
+    for instance in known if readers_by_variable else ():
         for transition, _ in instance.transitions:
             port = (
                 known.port(transition.communicationType, instance)
@@ -123,11 +123,13 @@ def _variables_read(known: Instances, places: Places) -> Iterator[Finding]:
             )
             for assignment in transition.assignments if port is not None else ():
                 variable = assigned_variable(assignment)
-                readers = read.get(InstanceVariable(instance, variable), ()) if variable is not None else ()
+                readers = (
+                    readers_by_variable.get(InstanceVariable(instance, variable), ()) if variable is not None else ()
+                )
                 others = [reader for reader, restricted in readers if restricted - {port}]
                 place = places.new(assignment, instance, port.communication) if port is not None and others else None
                 if place is not None and port is not None and variable is not None:
-                    name = written(port.communication.name)
+                    name = escape_keyword(port.communication.name)
                     yield Finding(
                         place,
                         f"`{variable.name}` changes when the controller requests the cancel of `{name}`, and a"
@@ -139,13 +141,13 @@ def _variables_read(known: Instances, places: Places) -> Iterator[Finding]:
 
 def _readers(known: Instances) -> dict[InstanceVariable, list[tuple[rsc.Requirement, set[PortInstance | None]]]]:
     """Return the requirements that read each variable, each with the commands that it restricts."""
-    found: dict[InstanceVariable, list[tuple[rsc.Requirement, set[PortInstance | None]]]] = {}
-    for stated in command_conditions(known):
-        for access in accesses(known.expanded(stated.condition, stated.within)):
-            variable = known.variable(access, stated.within)
+    readers: dict[InstanceVariable, list[tuple[rsc.Requirement, set[PortInstance | None]]]] = {}
+    for condition in command_conditions(known):
+        for access in accesses(known.expanded(condition.condition, condition.within)):
+            variable = known.variable(access, condition.within)
             if variable is not None:
-                found.setdefault(variable, []).append((stated.requirement, stated.restricted))
-    return found
+                readers.setdefault(variable, []).append((condition.requirement, condition.restricted))
+    return readers
 
 
 @rule("answer-unheard", Severity.WARNING)
@@ -156,7 +158,7 @@ def answer_unheard(base: rsc.Base) -> Iterator[Finding]:
     known = instances(base)
     heard = _answers_heard(known)
     restricted = _restricted(known)
-    read = _states_read(known)
+    states_read = _states_read(known)
     places = Places(base)
     for instance in known:
         for transition, state in instance.transitions:
@@ -166,46 +168,46 @@ def answer_unheard(base: rsc.Base) -> Iterator[Finding]:
             port = known.port(transition.communicationType, instance)
             if port is None or isinstance(port.communication, rsc.Message) or port in heard:
                 continue
-            unread = port not in restricted and (instance, target) not in read
+            unread = port not in restricted and (instance, target) not in states_read
             if unread and _answers_nothing(port.communication) and not _commands(target, instance, port, known):
                 continue
             place = places.new(transition, instance, port.communication)
             if place is not None:
-                name = written(port.communication.name)
+                name = escape_keyword(port.communication.name)
                 yield Finding(
                     place,
                     f"`{instance.name}` goes to `{target.name}` with the request to `{name}`, and no transition waits"
                     f" for its answer: events that `{target.name}` allows may begin before `{name}` has ended",
-                    f"go to a state that `on response from {name} goto {written(target.name)}` leaves, and give it"
-                    f" `on error from {name}`, too",
+                    f"go to a state that `on response from {name} goto {escape_keyword(target.name)}` leaves, "
+                    f"and give it `on error from {name}`, too",
                 )
 
 
 def _answers_heard(known: Instances) -> set[PortInstance]:
     """Return the services and actions whose response a transition or a requirement names."""
-    found: set[PortInstance | None] = set()
+    ports: set[PortInstance | None] = set()
     for instance in known:
         for transition, _ in instance.transitions:
             if _is_on(transition, rsc.ResultType.response):
-                found.add(known.port(transition.communicationType, instance))
+                ports.add(known.port(transition.communicationType, instance))
     for kind in (rsc.OrderRequirement, rsc.CountRequirement, rsc.AutomatonRequirement):
         for requirement in known.statements(kind):
             for reference in events_of(requirement.element):
                 if kind_of(reference) == rsc.ResultType.response:
-                    found.add(known.port(reference.communicationType, requirement.within))
-    return {port for port in found if port is not None}
+                    ports.add(known.port(reference.communicationType, requirement.within))
+    return {port for port in ports if port is not None}
 
 
 def _restricted(known: Instances) -> set[PortInstance]:
     """Return the communications whose start a requirement restricts."""
-    found: set[PortInstance | None] = set()
+    ports: set[PortInstance | None] = set()
     for requirement in known.statements(rsc.CommunicationRequirement):
-        found |= commands_of(requirement, known)
+        ports |= commands_of(requirement, known)
     for kind in (rsc.OrderRequirement, rsc.CountRequirement, rsc.AutomatonRequirement):
         for statement in known.statements(kind):
             for reference in events_of(statement.element):
-                found.add(known.port(reference.communicationType, statement.within))
-    return {port for port in found if port is not None}
+                ports.add(known.port(reference.communicationType, statement.within))
+    return {port for port in ports if port is not None}
 
 
 def _states_read(known: Instances) -> set[tuple[Instance | None, rsc.State]]:
@@ -266,13 +268,14 @@ def failure_unheard(base: rsc.Base) -> Iterator[Finding]:
             missing = _unheard(state, common, transition.communicationType, port in cancelable)
             place = places.new(transition, instance, port.communication) if missing else None
             if place is not None:
-                name = written(port.communication.name)
+                name = escape_keyword(port.communication.name)
                 ends = " or ".join(f"`{end} from {name}`" for end in missing)
                 yield Finding(
                     place,
                     f"`{instance.name}` leaves `{state.name}` at the response of `{name}`, and does not react to {ends}"
                     f" there: it may wait forever",
-                    f"let `{written(state.name)}` react to {ends}: with `goto` it gives up, without it tries again",
+                    f"let `{escape_keyword(state.name)}` react to {ends}: "
+                    "with `goto` it gives up, without it tries again",
                 )
 
 

@@ -10,8 +10,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from robosc.language.configuration import Configuration
-    from robosc.m2t.ros.node import Node
-    from robosc.m2t.ros.packages import Used
+    from robosc.m2t.ros.node import GeneratedNode
+    from robosc.m2t.ros.packages import UsedPackages
 
 #: Topics of an action. ROS 1 remaps these, not the action's own name.
 _ACTION = ("goal", "cancel", "status", "feedback", "result")
@@ -33,7 +33,14 @@ class Ros1:
         action = "Action" if interface.kind == rosgraph.InterfaceKind.action else ""
         return f"{interface.package}/{interface.type}{action}.h"
 
-    def controller(self, node: Node, configuration: Configuration, used: Used, *, tests: bool) -> dict[str, Any]:  # noqa: ARG002
+    def controller(
+        self,
+        node: GeneratedNode,
+        configuration: Configuration,  # noqa: ARG002
+        used: UsedPackages,
+        *,
+        tests: bool,
+    ) -> dict[str, Any]:
         """Return template values that only a controller has; see `Middleware`."""
         libraries = {"rosconsole", "roscpp", "xmlrpcpp", *(["actionlib"] if node.actions else [])}
         return {
@@ -42,7 +49,7 @@ class Ros1:
             "names": list(_names(node)),
         }
 
-    def _headers(self, node: Node, reports: Sequence[rosgraph.Interface]) -> list[str]:
+    def _headers(self, node: GeneratedNode, reports: Sequence[rosgraph.Interface]) -> list[str]:
         return sorted({self.header(interface) for interface in [*node.interfaces, *reports]} | {"ros/ros.h"})
 
 
@@ -53,7 +60,7 @@ def _build(dependencies: set[str], tested: Sequence[str]) -> dict[str, Any]:
     return {"build_tool": "catkin", "dependencies": built, "package_depends": depends}
 
 
-def _names(node: Node) -> Iterator[tuple[str, str, str, list[str]]]:
+def _names(node: GeneratedNode) -> Iterator[tuple[str, str, str, list[str]]]:
     """Return the names that a launch file remaps, each once: kind, word, name, and suffixes of the topics."""
     topics = {topic.topic: topic.word for topic in node.subscriptions}
     topics |= {topic.topic: topic.word for topic in node.publishers}

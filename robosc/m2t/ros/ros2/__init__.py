@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 
     from robosc.language.configuration import Configuration
     from robosc.m2t.ros.layer import LayerNode
-    from robosc.m2t.ros.node import Client, Node, Publisher, Subscription
-    from robosc.m2t.ros.packages import Used
+    from robosc.m2t.ros.node import Client, GeneratedNode, Publisher, Subscription
+    from robosc.m2t.ros.packages import UsedPackages
     from robosc.model import rosgraph
 
 _FOLDERS = {"message": "msg", "service": "srv", "action": "action"}
@@ -43,7 +43,9 @@ class Ros2:
         name = re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", words).lower()
         return f"{interface.package}/{_FOLDERS[interface.kind.name]}/{name}.hpp"
 
-    def controller(self, node: Node, configuration: Configuration, used: Used, *, tests: bool) -> dict[str, Any]:
+    def controller(
+        self, node: GeneratedNode, configuration: Configuration, used: UsedPackages, *, tests: bool
+    ) -> dict[str, Any]:
         """Return template values that only a controller has; see `Middleware`."""
         types = set(used.types)
         libraries, started = ["rclcpp"], ["launch", "launch_ros"]
@@ -61,13 +63,13 @@ class Ros2:
             "subscription_qos": lambda topic: _quality(_usual(topic), topic.topic, configuration),
             # Without a setting, the durability is that of the publisher.
             "kept_qos": lambda topic: (
-                "" if _chosen(topic.topic, configuration).durability else _kept(topic, configuration)
+                "" if _chosen(topic.topic, configuration).durability else _durability(topic, configuration)
             ),
             "publisher_qos": lambda topic: _quality(_sent(topic), topic.topic, configuration),
             "client_qos": lambda client: _quality(_client(client), client.name, configuration),
         }
 
-    def layer(self, layer: LayerNode, configuration: Configuration, used: Used) -> dict[str, Any]:
+    def layer(self, layer: LayerNode, configuration: Configuration, used: UsedPackages) -> dict[str, Any]:
         """Return template values that only a layer has; see `Middleware`."""
         types = {*used.types, *(["action_msgs"] if layer.node.actions else [])}
         hands_on = layer.instead and layer.node.hands_on
@@ -80,12 +82,12 @@ class Ros2:
             "controller_side": lambda name: f"~/{below_layer(name)}",
             # Relayed messages have the durability of the publisher.
             "received_qos": lambda topic: _quality(_usual(topic), topic.topic, configuration, with_durability=False),
-            "kept_qos": lambda topic: _kept(topic, configuration),
+            "kept_qos": lambda topic: _durability(topic, configuration),
             "sent_qos": lambda topic: f"rclcpp::QoS({_chosen(topic.topic, configuration).depth or QUEUE_DEPTH})",
             "client_qos": lambda call: _quality(_client(call), call.name, configuration),
         }
 
-    def _headers(self, node: Node, reports: Sequence[rosgraph.Interface]) -> list[str]:
+    def _headers(self, node: GeneratedNode, reports: Sequence[rosgraph.Interface]) -> list[str]:
         always = {"rclcpp/rclcpp.hpp", "rclcpp_components/register_node_macro.hpp"}
         return sorted({self.header(interface) for interface in [*node.interfaces, *reports]} | always)
 
@@ -109,7 +111,7 @@ def _usual(topic: Subscription | Publisher) -> str:
     return "rclcpp::SensorDataQoS()" if is_sensor_data(topic.interface.package) else f"rclcpp::QoS({QUEUE_DEPTH})"
 
 
-def _kept(topic: Subscription | Publisher, configuration: Configuration) -> str:
+def _durability(topic: Subscription | Publisher, configuration: Configuration) -> str:
     """Return the quality of service for receiving messages that publishers store: these are reliable."""
     unreliable = is_sensor_data(topic.interface.package) and not _chosen(topic.topic, configuration).reliability
     usual = f"{_usual(topic)}{'.reliable()' if unreliable else ''}"

@@ -3,5 +3,5 @@
 `controller` and `layer` are event handlers (`event_handler`); `node` runs them on any ROS. They reach the middleware
 through `port`, call services and actions by `clients`, offer them by `proxies`, and do one thing at a time in an
 `event_loop`. `times` and `monitors` watch the clock and the graph. `reports`, `component_status`, `blocking` and
-`event_log` make the reports of a node; subscribers to them implement `listening`.
+`event_log` make the reports of a node; subscribers to them implement `subscriber`.
 """

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 #: Name of each kind of reason in `~/blocked`, in order of precedence.
 _KINDS = {Origin.requirement: "requirement", Origin.plants: "state", Origin.synthesis: "synthesis"}
 #: Start of the sentence for each kind of reason, and the separator before the texts of the reasons.
-_SAID = {
+_HEADINGS = {
     "requirement": ("forbidden", ": "),
     "state": ("not possible", " in "),
     "synthesis": ("forbidden by synthesis", ": "),
@@ -26,15 +26,15 @@ _SAID = {
 
 
 @dataclass(frozen=True)
-class Reason:
+class LoggedReason:
     """Reason on `~/blocked`: a kind, and the texts of that kind."""
 
     kind: str
     because: Sequence[str]
 
     def __str__(self) -> str:
-        said, joint = _SAID[self.kind]
-        return said + (joint + ("; " if joint == ": " else ", ").join(self.because) if self.because else "")
+        heading, joint = _HEADINGS[self.kind]
+        return heading + (joint + ("; " if joint == ": " else ", ").join(self.because) if self.because else "")
 
 
 class Blocking:
@@ -45,14 +45,14 @@ class Blocking:
         self._events = {event.name: event for event in engine.executed.events}
         self._conditions: dict[executed.Reason, Callable[[], bool]] = {}
 
-    def reason(self, event: sct.Event) -> Reason:
+    def reason(self, event: sct.Event) -> LoggedReason:
         """Return why the supervisor does not allow an event now."""
         reasons = self._events[event_name(event)].reasons
         for origin, kind in _KINDS.items():
             texts = [self._text(reason) for reason in reasons if reason.kind == origin and self._applies(reason)]
             if texts:
-                return Reason(kind, texts)
-        return Reason(kind, ())
+                return LoggedReason(kind, texts)
+        return LoggedReason(kind, ())
 
     def _applies(self, reason: executed.Reason) -> bool:
         if reason.condition is None:
@@ -62,5 +62,5 @@ class Blocking:
         return self._conditions[reason]()
 
     def _text(self, reason: executed.Reason) -> str:
-        held = reason.location
-        return reason.text + (held.plant.locations[self.engine.cell(held)].name if held else "")
+        location = reason.location
+        return reason.text + (location.plant.locations[self.engine.cell(location)].name if location else "")

@@ -8,7 +8,7 @@ from enum import Enum
 from typing import TYPE_CHECKING
 
 from robosc.run.runtime.core.cancel_requests import CANCELING, FAREWELL, CancelRequests, GoalTimes
-from robosc.run.runtime.core.port import CallHandlers, CancelAnswer, Failure, GoalHandlers, Outcome
+from robosc.run.runtime.core.port import CallHandlers, CancelAnswer, Failure, GoalHandlers, GoalOutcome
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -331,19 +331,19 @@ class ActionClient:
             self._goal.cancel()  # the server may have accepted it already
         self._set_deadline(lambda: self._lose("neither accepted nor rejected"), LOST)
 
-    def _finish(self, outcome: Outcome, result: Message, text: str) -> None:
-        said = f": {text}" if text else ""
+    def _finish(self, outcome: GoalOutcome, result: Message, text: str) -> None:
+        suffix = f": {text}" if text else ""
         match outcome:
-            case Outcome.SUCCEEDED:
+            case GoalOutcome.SUCCEEDED:
                 self._reset()
                 self._answers.response(result)
-            case Outcome.CANCELED:
+            case GoalOutcome.CANCELED:
                 own = "canceled by the controller itself, an error to the model"
-                self._end_canceled(f"{own if self._canceling else 'canceled by someone else'}{said}", result)
-            case Outcome.ABORTED:
-                self._fail(Failure.ABORTED, f"aborted{said}", result)
-            case Outcome.LOST:
-                self._lose(f"{LOST_GOAL}{said}")
+                self._end_canceled(f"{own if self._canceling else 'canceled by someone else'}{suffix}", result)
+            case GoalOutcome.ABORTED:
+                self._fail(Failure.ABORTED, f"aborted{suffix}", result)
+            case GoalOutcome.LOST:
+                self._lose(f"{LOST_GOAL}{suffix}")
 
     def _end_canceled(self, why: str, result: Message) -> None:
         late = self._late

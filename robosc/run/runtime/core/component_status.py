@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from robosc.model.semantics.component_parts import STATELESS, Parts, components, request
 from robosc.model.semantics.roles import event_name
-from robosc.run.runtime.core.event_log import shown
+from robosc.run.runtime.core.event_log import format_value
 from robosc.run.runtime.core.json_text import json_text
 from robosc.run.runtime.core.port import ComponentStatus
 
@@ -65,15 +65,15 @@ class StatusReporter:
             state = plant.locations[self._blocking.engine.location(plant)].name
             values = [("state", state)]
             values += [(variable.name, _text(self._blocking.engine.value(variable))) for variable in plant.variables]
-        values += [(variable.name, _text(shown(self._data.variables[variable]))) for variable in parts.kept]
+        values += [(variable.name, _text(format_value(self._data.variables[variable]))) for variable in parts.stored]
         values += [(request(sending), self._verdict(sending.event)) for sending in parts.commands]
         return ComponentStatus(parts.name, bool(faults), "; ".join([state, *faults]), values)
 
     def _verdict(self, event: sct.Event) -> str:
         if not self._blocking.engine.enabled(event_name(event)):
             return str(self._blocking.reason(event))
-        held = self._own.held_back(event)
-        return "allowed" if held is None else f"held back: {held}"
+        obstacle = self._own.held_back(event)
+        return "allowed" if obstacle is None else f"held back: {obstacle}"
 
 
 def _text(value: Json) -> str:

@@ -16,7 +16,7 @@ from robosc.model.semantics.operators import UnreadableError
 from robosc.model.semantics.roles import event_name, plant_of
 from robosc.run.runtime.core.cancel_requests import GoalTimes
 from robosc.run.runtime.core.clients import ActionClient, Answers, ServiceClient
-from robosc.run.runtime.core.composing import Composer
+from robosc.run.runtime.core.composer import Composer
 from robosc.run.runtime.core.event_handler import EventHandler
 from robosc.run.runtime.core.monitors import OTHER_TYPE, GraphMonitor, Watchdog
 from robosc.run.runtime.core.node_data import NotFiniteError

@@ -10,7 +10,7 @@ from robosc.engine import ControlLoop, Hooks
 from robosc.language.configuration.parameters import model_parameters
 from robosc.model import engine, rosgraph, sct
 from robosc.model.semantics.durations import set_milliseconds
-from robosc.model.semantics.messages import received, receptions
+from robosc.model.semantics.messages import received_messages, receptions
 from robosc.model.semantics.operators import UnreadableError
 from robosc.model.semantics.roles import event_name
 from robosc.run.runtime.core.blocking import Blocking
@@ -37,7 +37,9 @@ if TYPE_CHECKING:
 def _unset_objects(graph: rosgraph.RosGraph, port: Port) -> dict[rosgraph.NodeVariable, Message]:
     """Return the initial objects of a node's variables, each new data of its ROS type."""
     sources = {
-        reception: (interface, section) for interface, section, several in received(graph) for reception in several
+        reception: (interface, section)
+        for interface, section, several in received_messages(graph)
+        for reception in several
     }
     return {
         variable: port.unset(*sources[variable.reception], variable.path)
@@ -120,7 +122,7 @@ class EventHandler:
         return ReceivedData(self._values(reception), has_reason=reception.event.kind == sct.EventKind.error)
 
     def _values(self, reception: rosgraph.Reception) -> list[ex.Expression]:
-        return [given.value for given in reception.inputs] + self._data.values_read(reception.event)
+        return [assignment.value for assignment in reception.inputs] + self._data.values_read(reception.event)
 
     # The node's life
 
@@ -181,8 +183,8 @@ class EventHandler:
     def receive(self, subscription: rosgraph.Subscription, message: Message) -> None:
         """Handle a message on a topic as a batch of events. A message that can't be read counts as not received."""
         with self._batch():
-            read = [self._receive(reception, subscription.topic, message) for reception in subscription.receptions]
-            if all(read):
+            results = [self._receive(reception, subscription.topic, message) for reception in subscription.receptions]
+            if all(results):
                 self._note_received(subscription)
 
     def _note_received(self, subscription: rosgraph.Subscription) -> None:
@@ -260,7 +262,7 @@ class EventHandler:
         if not self._control.enabled(event_name(event)):
             return None
         try:
-            received = self._data.received(event, inputs, message)
+            received = self._data.receive(event, inputs, message)
         except UnreadableError as fault:
             return fault
         self._data.variables.update(received.variables)
@@ -280,7 +282,7 @@ class EventHandler:
     def _changes(self, event: sct.Event) -> bool:
         """Change the node's variables for an event without data; if they can't be read, report it and return False."""
         try:
-            self._data.variables.update(self._data.received(event).variables)
+            self._data.variables.update(self._data.receive(event).variables)
         except UnreadableError as fault:
             self._warn(event, f"{event_name(event)}: {fault}")
             return False
@@ -321,8 +323,8 @@ class EventHandler:
             return None
         source, message = self._received
         if source is not event:
-            read = self._unread[source].read(self._data, message) or {"value": {}}
-            return {**read, **self._logged[event].reason(self._data)}
+            logged = self._unread[source].read(self._data, message) or {"value": {}}
+            return {**logged, **self._logged[event].reason(self._data)}
         return self._logged[event].read(self._data, message) if event in self._logged else None
 
     # Contents of `/diagnostics`

@@ -11,8 +11,8 @@ from typing import IO, TYPE_CHECKING, Any
 
 from robosc.base.files.writing import open_log
 from robosc.model import expression as ex
-from robosc.model.semantics.messages import Read, reads_reason
-from robosc.model.semantics.messages import shown as all_shown
+from robosc.model.semantics.messages import MessageRead, reads_reason
+from robosc.model.semantics.messages import logged_data as all_shown
 from robosc.model.semantics.operators import UnreadableError
 from robosc.run.runtime.core.json_text import json_text
 
@@ -46,7 +46,7 @@ def default_log(node: str, package: str) -> str:
 
 
 #: Seconds between two flushes of a log, and the number of buffered characters after which lines are lost.
-_FLUSH, _KEPT = 0.02, 8 << 20
+_FLUSH, _MOST_BYTES = 0.02, 8 << 20
 
 
 class EventLog:
@@ -88,7 +88,7 @@ class EventLog:
     def append(self, line: str) -> None:
         """Append a line, which ends with a line feed; if the buffer is full, the line is lost."""
         with self._changed:
-            if self._size + len(line) > _KEPT:
+            if self._size + len(line) > _MOST_BYTES:
                 self._lost += 1
                 return
             self._lines.append(line)
@@ -155,23 +155,23 @@ class ReceivedData:
         self.parts = all_shown(values)
         # An answer that can't be read is an error, too: the reason shows whose data this is.
         self._reads_reason = has_reason and (reads_reason(values) or bool(self.parts))
-        found = self.parts
-        self._found = {(): found["data",]} if list(found) == [("data",)] else found
+        parts = self.parts
+        self._parts = {(): parts["data",]} if list(parts) == [("data",)] else parts
 
     def read(self, data: NodeData, message: Message) -> Mapping[str, Json] | None:
         """Return the data for the log without what can't be read; None if nothing remains."""
         values: dict[_Path, Json] = {}
-        for path, part in self._found.items():
+        for path, part in self._parts.items():
             with suppress(UnreadableError):
-                if isinstance(part, Read):
+                if isinstance(part, MessageRead):
                     value = data.value(part.reference, message)
-                    values[path] = shown(value) if part.is_value else {}
+                    values[path] = format_value(value) if part.is_value else {}
                 else:
                     array = data.at(message, path or ("data",))
                     values[path] = [_inside(element, part, data) for element in array]
         if not values:
             return self.reason(data) or None
-        return {"value": values[()] if () in values else nested(values), **self.reason(data)}
+        return {"value": values[()] if () in values else nest(values), **self.reason(data)}
 
     def reason(self, data: NodeData) -> Mapping[str, Json]:
         """Return the reason of an error if the node reads it."""
@@ -183,27 +183,27 @@ def _inside(element: Any, parts: Shown, data: NodeData) -> Json:
     values: dict[_Path, Json] = {}
     for path, part in parts.items():
         reached = data.at(element, path)
-        if not isinstance(part, Read):
+        if not isinstance(part, MessageRead):
             values[path] = [_inside(inner, part, data) for inner in reached]
         elif part.conversion is not None:
-            values[path] = shown(data.convert(part.conversion, reached))
+            values[path] = format_value(data.convert(part.conversion, reached))
         else:
-            values[path] = shown(data.leaf(reached, part.type)) if part.type is not None else {}
-    return values[()] if () in values else nested(values)
+            values[path] = format_value(data.leaf(reached, part.type)) if part.type is not None else {}
+    return values[()] if () in values else nest(values)
 
 
-def nested(values: Mapping[_Path, Json]) -> dict[str, Json]:
+def nest(values: Mapping[_Path, Json]) -> dict[str, Json]:
     """Return nested objects from paths of names to values."""
-    made: dict[str, Json] = {}
+    root: dict[str, Json] = {}
     for path, value in values.items():
-        owner = made
+        owner = root
         for name in path[:-1]:
             owner = owner.setdefault(name, {})  # type: ignore[assignment]
         owner[path[-1]] = value
-    return made
+    return root
 
 
-def shown(value: Value) -> Json:
+def format_value(value: Value) -> Json:
     """Return a value as reports show it: a literal by its name."""
     if isinstance(value, ex.EnumerationLiteral):
         return value.name

@@ -42,5 +42,5 @@ def _number(value: float) -> str:
     return next(text for text in texts if float(text) == value)
 
 
-def _escape(found: re.Match[str]) -> str:
-    return f"\\{found[0]}" if found[0] in '"\\' else code(found[0])
+def _escape(match: re.Match[str]) -> str:
+    return f"\\{match[0]}" if match[0] in '"\\' else code(match[0])

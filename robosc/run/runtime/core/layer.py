@@ -9,7 +9,7 @@ from robosc.engine import Settings as LoopSettings
 from robosc.model import engine, rosgraph
 from robosc.model.semantics.operators import UnreadableError
 from robosc.model.semantics.roles import event_name, plant_of
-from robosc.run.runtime.core.composing import Composer
+from robosc.run.runtime.core.composer import Composer
 from robosc.run.runtime.core.event_handler import EventHandler
 from robosc.run.runtime.core.json_text import Json, json_text
 from robosc.run.runtime.core.node_data import NotFiniteError

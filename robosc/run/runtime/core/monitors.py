@@ -153,9 +153,9 @@ class GraphMonitor:
         report: Callable[[str], None] | None = None,
     ) -> None:
         """Note a fault until the next check; log the text, else the fault, the first time."""
-        found = self._faults.setdefault(element, [])
-        if fault not in found:
-            found.append(fault)
+        faults = self._faults.setdefault(element, [])
+        if fault not in faults:
+            faults.append(fault)
         text = text or fault
         if text not in self._reported:
             self._reported.add(text)

@@ -43,7 +43,7 @@ class StartError(Exception):
         self.hint = hint
 
 
-class Node(ControllerPort, ABC):
+class RunningNode(ControllerPort, ABC):
     """Running node for a controller or a layer. Raises StartError for a missing type.
 
     The subclass creates publishers, subscriptions and clients with its middleware.
@@ -67,16 +67,16 @@ class Node(ControllerPort, ABC):
 
     def unset(self, interface: rosgraph.Interface, section: Section, path: Sequence[str]) -> Message:
         """Return the object at a path in new data of a type; a step `0` is an element of an array."""
-        made = self.create(interface, section)
+        message = self.create(interface, section)
         for name, behind in zip_longest(path, path[1:]):
             if behind == "0":
-                package, *_, kind = element_type(self.wire_types(made)[name]).split("/")
+                package, *_, kind = element_type(self.wire_types(message)[name]).split("/")
                 element = rosgraph.Interface(package=package, type=kind, kind=rosgraph.InterfaceKind.message)
                 self._types[element] = self._load_type(element)
-                made = self.create(element, Section.MESSAGE)
+                message = self.create(element, Section.MESSAGE)
             elif name != "0":
-                made = getattr(made, name)
-        return made
+                message = getattr(message, name)
+        return message
 
     def _load_type(self, interface: rosgraph.Interface) -> Any:
         """Return the Python class of a ROS type. Raises StartError if there is none."""

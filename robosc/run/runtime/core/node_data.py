@@ -66,7 +66,7 @@ class PastEndError(UnreadableError):
         super().__init__(f"there is no element {index} in an array of {length}")
 
 
-class Received(NamedTuple):
+class ReceivedValues(NamedTuple):
     """Data of an event, computed in the state before it: its inputs by name, and the node's new values."""
 
     inputs: dict[str, Any]
@@ -115,15 +115,15 @@ class NodeData:
         plant: sct.Plant = location.eContainer()
         return plant.locations[self._engine.location(plant)] is location
 
-    def received(
+    def receive(
         self, event: sct.Event, inputs: Sequence[rosgraph.InputAssignment] = (), data: Message = None
-    ) -> Received:
+    ) -> ReceivedValues:
         """Return the inputs and new values of an event in the present state; change nothing.
 
         Raises UnreadableError if one of them can't be read: then the event must not happen.
         """
         variables = self._assigned(event, data)
-        return Received({given.input.name: self.input(given, data) for given in inputs}, variables)
+        return ReceivedValues({assignment.input.name: self.input(assignment, data) for assignment in inputs}, variables)
 
     def input(self, assigned: rosgraph.InputAssignment, data: Message) -> Any:
         """Return the value of an input; its first value if it can't be read, as then no taken transition needs it."""
@@ -140,7 +140,7 @@ class NodeData:
                 for needed in reaction.needs:
                     self.value(needed, data)
                 for assignment in reaction.assignments:
-                    assigned[assignment.variable] = bounded(
+                    assigned[assignment.variable] = within_range(
                         self.value(assignment.value, data), assignment.variable.type
                     )
         return assigned
@@ -163,17 +163,17 @@ class NodeData:
                 continue
         return conversion.default
 
-    def _read(self, reference: ex.Expression, *given: Any) -> Value:
-        """Return the value of a reference; `given` is the element that it reads, its indices, and the incoming data."""
+    def _read(self, reference: ex.Expression, *context: Any) -> Value:
+        """Return the value of a reference; `context` is the element that it reads, its indices, and the data."""
         match reference:
             case rosgraph.NodeVariableReference():
                 return self.variables[reference.variable]
             case rosgraph.WireAccess():
-                return self.leaf(self._reach(reference, *given), reference.type)
+                return self.leaf(self._reach(reference, *context), reference.type)
             case rosgraph.ConversionCall():
-                return self.convert(reference.conversion, self._reach(reference.argument, *given))
+                return self.convert(reference.conversion, self._reach(reference.argument, *context))
             case rosgraph.ArrayLiteral():
-                return given[:-1]
+                return context[:-1]
             case rosgraph.ErrorReason():
                 return next(literal for literal in reference.enumeration.literals if literal.name == self.reason)
             case ex.EnumerationLiteralReference():
@@ -184,10 +184,10 @@ class NodeData:
                 return self._variable(reference.variable)
         raise TypeError(f"a ROS graph holds no {type(reference).__name__}")
 
-    def _reach(self, access: rosgraph.WireAccess, *given: Any) -> Any:
+    def _reach(self, access: rosgraph.WireAccess, *context: Any) -> Any:
         """Return the value that an access reads of a message or an element at these indices. Raises UnreadableError."""
-        start = given[-1] if access.variable is None else self.variables[access.variable]
-        rest = iter(given if access.quantifier else (start, *given[:-1]))
+        start = context[-1] if access.variable is None else self.variables[access.variable]
+        rest = iter(context if access.quantifier else (start, *context[:-1]))
         reached = next(rest)
         for step in access.steps:
             match step:
@@ -243,14 +243,14 @@ class NodeData:
         return value
 
 
-def bounded(value: Value, kind: ex.Type) -> Value:
+def within_range(value: Value, kind: ex.Type) -> Value:
     """Return the value as a variable of the type holds it: an integer within its range."""
     if isinstance(kind, ex.IntegerType):
         assert isinstance(value, int)
         return saturate(fit(value), kind.minimum, kind.maximum)
     if isinstance(kind, rosgraph.ArrayType) and kind.element is not None:
         assert isinstance(value, Iterable)
-        return [bounded(element, kind.element) for element in value]
+        return [within_range(element, kind.element) for element in value]
     return value
 
 
@@ -272,9 +272,9 @@ def fill(port: ControllerPort, message: Message, path: Sequence[str], value: Val
     kind = port.wire_types(owner)[path[-1]]
     if isinstance(value, Sequence) and not isinstance(value, str):
         return _fill_array(owner, kind, value, path)
-    held: bool | int | float | str = _held(kind, value, path)
-    setattr(owner, path[-1], bytes([held]) if kind == "octet" and isinstance(held, int) else held)
-    return held
+    stored: bool | int | float | str = _finite_value(kind, value, path)
+    setattr(owner, path[-1], bytes([stored]) if kind == "octet" and isinstance(stored, int) else stored)
+    return stored
 
 
 def hand_on(port: ControllerPort, message: Message, path: Sequence[str], data: Any) -> None:
@@ -311,11 +311,11 @@ def _is_finite(port: ControllerPort, data: Any) -> bool:
 def _fill_array(owner: Message, kind: str, values: Sequence[Value], path: Sequence[str]) -> Json:
     """Set the elements of an array; an array of fixed length keeps its further elements."""
     element, length = _array(kind)
-    held = [_held(element, value, path) for value in values[:length]]
-    rest = [] if length is None else list(getattr(owner, path[-1]))[len(held) :]
-    octets = [bytes([number]) if element == "octet" and isinstance(number, int) else number for number in held]
+    elements = [_finite_value(element, value, path) for value in values[:length]]
+    rest = [] if length is None else list(getattr(owner, path[-1]))[len(elements) :]
+    octets = [bytes([number]) if element == "octet" and isinstance(number, int) else number for number in elements]
     setattr(owner, path[-1], [*octets, *rest])
-    return held
+    return elements
 
 
 def _array(kind: str) -> tuple[str, int | None]:
@@ -325,7 +325,7 @@ def _array(kind: str) -> tuple[str, int | None]:
     return bounds[1], int(bounds[2]) if bounds[2] else None
 
 
-def _held(kind: str, value: Value, path: Sequence[str]) -> bool | int | float | str:
+def _finite_value(kind: str, value: Value, path: Sequence[str]) -> bool | int | float | str:
     if isinstance(value, (bool, str)):
         return value
     assert isinstance(value, (int, float))

@@ -18,7 +18,7 @@ Message: TypeAlias = Any
 Client: TypeAlias = "rosgraph.ServiceClient | rosgraph.ActionClient"
 
 
-class Outcome(StrEnum):
+class GoalOutcome(StrEnum):
     """End of a goal. `LOST`: its server no longer knows it or its end; the robot may still move."""
 
     SUCCEEDED = "succeeded"
@@ -70,7 +70,7 @@ class GoalHandlers:
     accepted: Callable[[], None]
     rejected: Callable[[], None]
     feedback: Callable[[Message], None]
-    ended: Callable[[Outcome, Message, str], None]
+    ended: Callable[[GoalOutcome, Message, str], None]
     cancel_answered: Callable[[CancelAnswer], None]
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 from robosc.run.runtime.core.cancel_requests import CANCELING, CancelRequests, GoalTimes
 from robosc.run.runtime.core.clients import LOST, LOST_GOAL, LOST_RESULT, POLL, UNKNOWN_GOAL, Answers, ServiceClient
-from robosc.run.runtime.core.port import CancelAnswer, Failure, Outcome
+from robosc.run.runtime.core.port import CancelAnswer, Failure, GoalOutcome
 
 if TYPE_CHECKING:
     from robosc.model import rosgraph
@@ -228,18 +228,18 @@ class ActionProxy(ABC, Generic[_Goal]):
             self._layer.feed_back(self._action, feedback)
         return goal is not None
 
-    def _receive_end(self, goal: _Goal, outcome: Outcome, result: Message) -> None:
+    def _receive_end(self, goal: _Goal, outcome: GoalOutcome, result: Message) -> None:
         """Handle the end of the present goal by the robot."""
         self._forget()
         late = Failure.TIMEOUT if goal.late else None
         match outcome:
-            case Outcome.SUCCEEDED:
+            case GoalOutcome.SUCCEEDED:
                 self._layer.respond(self._action, result)
-            case Outcome.CANCELED:
+            case GoalOutcome.CANCELED:
                 self._layer.end_canceled(self._action, late or Failure.CANCELED, "canceled", result)
-            case Outcome.ABORTED:
+            case GoalOutcome.ABORTED:
                 self._layer.fail(self._action, late or Failure.ABORTED, "aborted", result)
-            case Outcome.LOST:
+            case GoalOutcome.LOST:
                 self._layer.fail(self._action, Failure.LOST, LOST_GOAL)
 
     def _give_up(self, goal: _Goal, reason: Failure, why: str) -> None:

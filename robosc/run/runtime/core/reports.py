@@ -6,8 +6,8 @@ from collections import deque
 from typing import TYPE_CHECKING
 
 from robosc.model import rosgraph, sct
-from robosc.model.semantics.definition import TRANSITIONS_KEPT, definition_text, reported
-from robosc.run.runtime.core.event_log import shown
+from robosc.model.semantics.definition import TRANSITIONS_KEPT, definition_text, reported_variables
+from robosc.run.runtime.core.event_log import format_value
 from robosc.run.runtime.core.json_text import Json, json_text
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ class StateReporter:
         self._publishes = configuration.publish_state_information
         self._listeners = 0
         self._transitions: deque[str] = deque(maxlen=TRANSITIONS_KEPT)
-        shown = reported(graph)
+        shown = reported_variables(graph)
         self._components: list[tuple[str, sct.Plant, Sequence[rosgraph.NodeVariable]]] = [
             (plant.origin or plant.name, plant, shown.get(plant.origin, ()))
             for plant in graph.model.plants
@@ -75,7 +75,7 @@ class StateReporter:
                 "state": plant.locations[self._engine.location(plant)].name,
                 "variables": {
                     **{variable.name: self._engine.value(variable) for variable in plant.variables},
-                    **{variable.name: shown(self._data.variables[variable]) for variable in variables},
+                    **{variable.name: format_value(self._data.variables[variable]) for variable in variables},
                 },
             }
             for name, plant, variables in self._components

@@ -13,7 +13,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 
 from robosc.run.runtime.core.cancel_requests import GoalTimes
 from robosc.run.runtime.core.clients import LOST
-from robosc.run.runtime.core.port import Failure, GoalHandlers, Outcome
+from robosc.run.runtime.core.port import Failure, GoalHandlers, GoalOutcome
 from robosc.run.runtime.core.proxies import ActionProxy, ProxiedGoal
 from robosc.run.runtime.ros2.answers import cancel_answer, outcome, uuid_bytes
 
@@ -86,7 +86,7 @@ class SentGoal:
         self._handlers.ended(outcome(answer.status), answer.result, "")
 
     def _failed(self, why: str) -> None:
-        self._handlers.ended(Outcome.LOST, None, why)
+        self._handlers.ended(GoalOutcome.LOST, None, why)
 
 
 class LateAnswer:
@@ -95,18 +95,18 @@ class LateAnswer:
     def __init__(self, response: Message) -> None:
         self.response = response
         self._send: Callable[[Message], None] | None = None
-        self._given = False
+        self._is_complete = False
 
     def give(self, response: Message = None) -> None:
         """Answer; without a response, with an unset one."""
-        self.response, self._given = response or self.response, True
+        self.response, self._is_complete = response or self.response, True
         if self._send is not None:
             self._send(self.response)
 
     def send_with(self, send: Callable[[Message], None]) -> None:
         """Set the function that sends the answer to the caller."""
         self._send = send
-        if self._given:
+        if self._is_complete:
             send(self.response)
 
 

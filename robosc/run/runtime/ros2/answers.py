@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.run.runtime.core.port import CancelAnswer, Outcome
+from robosc.run.runtime.core.port import CancelAnswer, GoalOutcome
 
 if TYPE_CHECKING:
     from robosc.run.runtime.core.port import Message
 
 #: The final values of `action_msgs/msg/GoalStatus`.
-_OUTCOMES = {4: Outcome.SUCCEEDED, 5: Outcome.CANCELED, 6: Outcome.ABORTED}
+_OUTCOMES = {4: GoalOutcome.SUCCEEDED, 5: GoalOutcome.CANCELED, 6: GoalOutcome.ABORTED}
 
 
-def outcome(status: int) -> Outcome:
+def outcome(status: int) -> GoalOutcome:
     """Return how a goal has ended by the status of its result; with any other status the goal may still run."""
-    return _OUTCOMES.get(status, Outcome.LOST)
+    return _OUTCOMES.get(status, GoalOutcome.LOST)
 
 
 def cancel_answer(response: Message, goal: bytes) -> CancelAnswer:

@@ -86,13 +86,13 @@ def build(folders: Iterable[Path], out: Path) -> list[str]:
     out.mkdir(parents=True, exist_ok=True)
     # The generators print the files that they read and write.
     with tempfile.TemporaryDirectory(prefix=".robosc-", dir=out) as temporary, redirect_stdout(StringIO()):
-        work, made = Path(temporary, "work"), Path(temporary, "made")
+        work, built = Path(temporary, "work"), Path(temporary, "made")
         packages = {name: _converted(name, root, work) for name, root in sorted(sources.items())}
         order = _ordered(packages)
         for name in order:
-            _build(packages[name], packages, made, work)
+            _build(packages[name], packages, built, work)
             shutil.rmtree(out / name, ignore_errors=True)
-            shutil.copytree(made / name, out / name)
+            shutil.copytree(built / name, out / name)
     return order
 
 
@@ -214,19 +214,21 @@ def _build(package: _Package, packages: Mapping[str, _Package], out: Path, work:
         objects = _compiled(sorted(sources), include, work / "objects" / name / file)
         # The middleware looks up a type support by its library's name: it has to be loaded already, used or not.
         options = ["-shared", f"-Wl,-soname,{file}", "-Wl,--no-as-needed", f"-Wl,-rpath,{runpath}"]
-        made = out / name / file
-        _run("g++", *options, "-o", made, *objects, *linked, *others, f"-L{PREFIX / 'lib'}", *libraries)
-        return made
+        target = out / name / file
+        _run("g++", *options, "-o", target, *objects, *linked, *others, f"-L{PREFIX / 'lib'}", *libraries)
+        return target
 
     modules = out / name
     types = library(
         f"lib{name}__rosidl_generator_c.so", [*_sources(generated[0] / name), *_sources(generated[1] / name)]
     )
-    made = [library(f"lib{name}__{folder.name}.so", _sources(folder / name), [types]) for folder in generated[2:]]
+    libraries_built = [
+        library(f"lib{name}__{folder.name}.so", _sources(folder / name), [types]) for folder in generated[2:]
+    ]
     conversions = [source for kind in CONVERTERS for source in _sources(modules / kind)]
-    made += [types, library(f"lib{name}__rosidl_generator_py.so", conversions, [types])]
+    libraries_built += [types, library(f"lib{name}__rosidl_generator_py.so", conversions, [types])]
     ending = sysconfig.get_config_var("EXT_SUFFIX")
-    library(f"{name}_s__rosidl_typesupport_c{ending}", modules.glob("*.c"), made)
+    library(f"{name}_s__rosidl_typesupport_c{ending}", modules.glob("*.c"), libraries_built)
 
 
 def _sources(folder: Path) -> list[Path]:
@@ -236,16 +238,16 @@ def _sources(folder: Path) -> list[Path]:
 def _compiled(sources: Iterable[Path], include: Sequence[str], objects: Path) -> list[Path]:
     """Compile the sources in parallel; return the object files."""
     objects.mkdir(parents=True)
-    made = {source: objects / f"{number}.o" for number, source in enumerate(sources)}
+    object_files = {source: objects / f"{number}.o" for number, source in enumerate(sources)}
 
     def compile_one(source: Path) -> None:
         compiler = "g++" if source.suffix == ".cpp" else "gcc"
-        _run(compiler, "-O0", "-w", "-fPIC", *include, "-c", source, "-o", made[source])
+        _run(compiler, "-O0", "-w", "-fPIC", *include, "-c", source, "-o", object_files[source])
 
     with ThreadPoolExecutor(os.cpu_count()) as executor:
-        for _ in executor.map(compile_one, made):
+        for _ in executor.map(compile_one, object_files):
             pass
-    return list(made.values())
+    return list(object_files.values())
 
 
 def _run(compiler: str, *arguments: str | Path) -> None:

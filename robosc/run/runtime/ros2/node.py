@@ -15,7 +15,7 @@ from robosc.model import rosgraph
 from robosc.model.semantics.communication import QUEUE_DEPTH, is_sensor_data
 from robosc.model.semantics.naming import below_layer
 from robosc.run.runtime.core.event_loop import EventLoop
-from robosc.run.runtime.core.node import DIAGNOSTICS, FAREWELL, LONGEST_WAIT, Node, StartError
+from robosc.run.runtime.core.node import DIAGNOSTICS, FAREWELL, LONGEST_WAIT, RunningNode, StartError
 from robosc.run.runtime.core.port import CallHandlers, Endpoint, GoalHandlers
 from robosc.run.runtime.core.settings import check
 
@@ -74,7 +74,7 @@ MOST_HEARD = 1000
 MOST_AT_ONCE = 10
 
 
-class Ros2Node(Node):
+class Ros2Node(RunningNode):
     """Node of ROS 2 named `name`; `arguments` are those of ROS, such as `--ros-args`."""
 
     type_hint = (
@@ -106,13 +106,13 @@ class Ros2Node(Node):
         self._heard: Counter[str] = Counter()
 
     def _load_type(self, interface: rosgraph.Interface) -> Any:
-        found = super()._load_type(interface)
+        message_type = super()._load_type(interface)
         try:
-            check_for_type_support(found)
+            check_for_type_support(message_type)
         except (NoTypeSupportImportedException, ImportError) as error:
             what = f"{interface.package}/{interface.type}"
             raise StartError(f"{what} is not built for this Python: {error}", self.type_hint) from None
-        return found
+        return message_type
 
     # The node's life
 
@@ -122,8 +122,8 @@ class Ros2Node(Node):
 
     def open_reports(self, names: Sequence[str]) -> None:
         for name in names:
-            kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-            quality = kept if name == "definition" else QoSProfile(depth=QUEUE_DEPTH)
+            latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+            quality = latched if name == "definition" else QoSProfile(depth=QUEUE_DEPTH)
             self._reports[name] = self.node.create_publisher(String, f"~/{name}", quality)
 
     def _diagnostics_publisher(self, kind: Any) -> Any:
@@ -151,14 +151,14 @@ class Ros2Node(Node):
     def _follow_parameters(self, handler: EventHandler) -> None:
         """Accept changed parameters between batches, in the thread of the event loop."""
 
-        def accept(given: Sequence[Any]) -> SetParametersResult:
+        def accept(changes: Sequence[Any]) -> SetParametersResult:
             try:
-                for parameter in given:
+                for parameter in changes:
                     if parameter.name in self._changing:
                         check(self._changing[parameter.name], parameter.value)
             except ValueError as error:
                 return SetParametersResult(successful=False, reason=str(error))
-            handler.set_parameters({parameter.name: parameter.value for parameter in given})
+            handler.set_parameters({parameter.name: parameter.value for parameter in changes})
             return SetParametersResult(successful=True)
 
         if self._changing:
@@ -206,12 +206,14 @@ class Ros2Node(Node):
         chosen = self._configuration.qos.get(name.removeprefix("/"))
         if chosen is None:
             return usual
-        made = QoSProfile(depth=chosen.depth or usual.depth, reliability=usual.reliability, durability=usual.durability)
+        profile = QoSProfile(
+            depth=chosen.depth or usual.depth, reliability=usual.reliability, durability=usual.durability
+        )
         if chosen.reliability:
-            made.reliability = ReliabilityPolicy[chosen.reliability.upper()]
+            profile.reliability = ReliabilityPolicy[chosen.reliability.upper()]
         if chosen.durability:
-            made.durability = DurabilityPolicy[chosen.durability.upper()]
-        return made
+            profile.durability = DurabilityPolicy[chosen.durability.upper()]
+        return profile
 
     def _chosen(self, element: rosgraph.Subscription | rosgraph.Publisher) -> QualityOfService:
         """Return the configured quality of service of a topic."""
@@ -222,8 +224,8 @@ class Ros2Node(Node):
         return self.quality(element.topic, qos_profile_sensor_data if sensor else None)
 
     def _publisher(self, publisher: rosgraph.Publisher) -> Any:
-        kept = all(sending.onChange for sending in publisher.sendings)
-        usual = QoSProfile(depth=QUEUE_DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL) if kept else None
+        is_latched = all(sending.onChange for sending in publisher.sendings)
+        usual = QoSProfile(depth=QUEUE_DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL) if is_latched else None
         self._qualities[publisher] = self.quality(publisher.topic, usual)
         return self.node.create_publisher(
             self._types[publisher.interface],
@@ -235,20 +237,20 @@ class Ros2Node(Node):
         )
 
     def _subscribe(self, subscription: rosgraph.Subscription, receive: Callable[[Message], None]) -> None:
-        made: list[Any] = []
+        subscriptions: list[Any] = []
 
         def subscribe(lasting: bool) -> None:
             quality = self._received_quality(subscription)
-            wanted = _durable(quality, self._chosen(subscription)) if lasting else quality
-            while made:
-                self.node.destroy_subscription(made.pop())
-            self._qualities[subscription] = wanted
-            made.append(
+            requested = _durable(quality, self._chosen(subscription)) if lasting else quality
+            while subscriptions:
+                self.node.destroy_subscription(subscriptions.pop())
+            self._qualities[subscription] = requested
+            subscriptions.append(
                 self.node.create_subscription(
                     self._types[subscription.interface],
                     subscription.topic,
                     receive,
-                    wanted,
+                    requested,
                     # Their parameters have the reliability of the first subscription by default.
                     qos_overriding_options=QoSOverridingOptions(_KEPT_POLICIES)
                     if lasting
@@ -285,15 +287,15 @@ class Ros2Node(Node):
         types = dict(self.node.get_service_names_and_types()).get(name, ())
         if set(types) <= {own} and self.node.count_services(name) <= 1:
             return []
-        found = []
+        nodes = []
         for node, space in self.node.get_node_names_and_namespaces():
             try:
                 served = dict(self.node.get_service_names_and_types_by_node(node, space))
             except NodeNameNonExistentError:
                 continue  # it has just gone
             full_name = f"{space.rstrip('/')}/{node}"
-            found += [(full_name, kind.removesuffix(part[1])) for kind in served.get(name, ())]
-        return found
+            nodes += [(full_name, kind.removesuffix(part[1])) for kind in served.get(name, ())]
+        return nodes
 
     def endpoints(self) -> dict[rosgraph.Subscription | rosgraph.Publisher, list[Endpoint]]:
         self._durabilities.look()
@@ -301,16 +303,16 @@ class Ros2Node(Node):
 
     def _endpoints(self, element: rosgraph.Subscription | rosgraph.Publisher) -> list[Endpoint]:
         publishers = self.node.get_publishers_info_by_topic(element.topic)
-        found = [_endpoint(other, other.qos_profile, self._qualities[element]) for other in publishers]
+        endpoints = [_endpoint(other, other.qos_profile, self._qualities[element]) for other in publishers]
         if isinstance(element, rosgraph.Publisher):
             # Use the node's own entry in the graph: the requested profile leaves deadlines and leases open.
             own = [info.qos_profile for info in publishers if _full_name(info) == self.full_name]
-            found += [
+            endpoints += [
                 replace(_endpoint(other, own[0], other.qos_profile), listens=True)
                 for other in self.node.get_subscriptions_info_by_topic(element.topic)
                 if own
             ]
-        return [endpoint for endpoint in found if endpoint.node != self.full_name]
+        return [endpoint for endpoint in endpoints if endpoint.node != self.full_name]
 
     def hear(self) -> None:
         # The executor handles one message at a time, with planned calls in between.
@@ -328,10 +330,10 @@ class Ros2Node(Node):
                 continue
             for _ in range(most):
                 with subscription.handle:
-                    found = subscription.handle.take_message(subscription.msg_type, subscription.raw)
-                if found is None:
+                    arrived = subscription.handle.take_message(subscription.msg_type, subscription.raw)
+                if arrived is None:
                     break
-                subscription.callback(found[0])
+                subscription.callback(arrived[0])
                 self._heard[subscription.topic_name] += 1
                 taken += 1
         return taken
@@ -389,8 +391,8 @@ class Ros2Node(Node):
 
     def servers(self, action: str) -> frozenset[bytes]:
         """Return the servers of an action in the ROS graph; a restarted server has another identity."""
-        found = self.node.get_publishers_info_by_topic(f"{action}/_action/status")
-        return frozenset(bytes(publisher.endpoint_gid) for publisher in found)
+        publishers = self.node.get_publishers_info_by_topic(f"{action}/_action/status")
+        return frozenset(bytes(publisher.endpoint_gid) for publisher in publishers)
 
     def _proxy(self, action: rosgraph.ActionClient, layer: Layer, timeout: float) -> ActionProxy[Any]:
         return Ros2ActionProxy(self, self._types[action.interface].Impl, action, layer, timeout)
@@ -415,8 +417,8 @@ def executor() -> Any:
     return EventsExecutor()
 
 
-def _endpoint(other: Any, offered: Any, asked: Any) -> Endpoint:
-    compatibility, reason = qos_check_compatible(offered, asked)
+def _endpoint(other: Any, offered: Any, requested: Any) -> Endpoint:
+    compatibility, reason = qos_check_compatible(offered, requested)
     fault = reason.strip(";: ") if compatibility == QoSCompatibility.ERROR else None
     name = _full_name(other)
     return Endpoint("" if "UNKNOWN" in name else name, other.topic_type, fault)

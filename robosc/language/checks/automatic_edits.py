@@ -23,7 +23,7 @@ _MOST_HIDDEN = 8
 _STRINGS = (Kind.STRING, Kind.OPEN_STRING)
 
 
-class Checked(Protocol):
+class CheckedModel(Protocol):
     """A checked model; `findings` are those of reading and of the rules, including imported files."""
 
     @property
@@ -71,7 +71,7 @@ class _Offsets:
 
 
 def objection(
-    before: Checked, after: Checked, edits: Mapping[str, Sequence[Edit]], mended: Sequence[Diagnostic] = ()
+    before: CheckedModel, after: CheckedModel, edits: Mapping[str, Sequence[Edit]], mended: Sequence[Diagnostic] = ()
 ) -> str | None:
     """Return why the edits make a model worse, in words; None if they do not.
 
@@ -91,7 +91,9 @@ class Safety(Enum):
     HARMFUL = auto()
 
 
-def safety_of(finding: Diagnostic, edits: Sequence[Edit], before: Checked, check: Callable[[str], Checked]) -> Safety:
+def safety_of(
+    finding: Diagnostic, edits: Sequence[Edit], before: CheckedModel, check: Callable[[str], CheckedModel]
+) -> Safety:
     """Return the effect of edits of a file that should mend a finding in it.
 
     The edits are safe if `safe_edits` may use them; `check` is the argument of `safe_edits`. They are harmful if the
@@ -108,7 +110,7 @@ def safety_of(finding: Diagnostic, edits: Sequence[Edit], before: Checked, check
     return Safety.HARMFUL if comparison.is_harmful(finding) else Safety.DOUBTFUL
 
 
-def safe_edits(before: Checked, check: Callable[[str], Checked]) -> list[Edit]:
+def safe_edits(before: CheckedModel, check: Callable[[str], CheckedModel]) -> list[Edit]:
     """Return the edits that leave a file no worse, for findings with exactly one way to mend them.
 
     `check` reads and checks the model with another text of the file. Syntax errors come first: other edits are returned
@@ -122,7 +124,9 @@ def safe_edits(before: Checked, check: Callable[[str], Checked]) -> list[Edit]:
     return _edits(_safe(syntax, before, check) or _safe(others, before, check))
 
 
-def _safe(findings: Sequence[Diagnostic], before: Checked, check: Callable[[str], Checked]) -> Sequence[Diagnostic]:
+def _safe(
+    findings: Sequence[Diagnostic], before: CheckedModel, check: Callable[[str], CheckedModel]
+) -> Sequence[Diagnostic]:
     """Return a large set of these findings that can be mended together."""
     text = before.reading.file.text
     chosen = _apart(findings)
@@ -142,7 +146,7 @@ def _safe(findings: Sequence[Diagnostic], before: Checked, check: Callable[[str]
     return both if objection(before, check(text.after(edits)), {text.file: edits}, both) is None else first
 
 
-def _leads_on(finding: Diagnostic, before: Checked, check: Callable[[str], Checked]) -> bool:
+def _leads_on(finding: Diagnostic, before: CheckedModel, check: Callable[[str], CheckedModel]) -> bool:
     """Return whether mending a syntax error reveals others that can be mended, too, with fewer left in the end.
 
     Each of several edits is a guess at the intention, so that the lines that they change must have no error in the end.
@@ -168,14 +172,14 @@ def _leads_on(finding: Diagnostic, before: Checked, check: Callable[[str], Check
 
 def _apart(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
     """Return the findings whose edits touch no edit of an earlier finding; an equal edit is allowed."""
-    found: list[Diagnostic] = []
+    separate: list[Diagnostic] = []
     done: set[Edit] = set()
     for finding in findings:
         new = set(finding.edits) - done
         if not any(_touch(edit, other) for edit in new for other in done):
-            found.append(finding)
+            separate.append(finding)
             done |= new
-    return found
+    return separate
 
 
 def _touch(edit: Edit, other: Edit) -> bool:
@@ -190,7 +194,7 @@ def _edits(findings: Iterable[Diagnostic]) -> list[Edit]:
 class _Comparison:
     """Comparison of a model before and after edits."""
 
-    def __init__(self, before: Checked, after: Checked, edits: Mapping[str, Sequence[Edit]]) -> None:
+    def __init__(self, before: CheckedModel, after: CheckedModel, edits: Mapping[str, Sequence[Edit]]) -> None:
         self._before, self._after = before, after
         self._files = before.reading.files
         self._files_after = after.reading.files
@@ -218,11 +222,11 @@ class _Comparison:
             return True
         text = self._files_after[mended.file].text
         before, after = (
-            [found for found in checked.findings if (found.file, found.rule) == (mended.file, mended.rule)]
+            [other for other in checked.findings if (other.file, other.rule) == (mended.file, mended.rule)]
             for checked in (self._before, self._after)
         )
         same = (mended.message, self._start(mended))
-        stays = any(same == (found.message, _start(found, text)) for found in after)
+        stays = any(same == (other.message, _start(other, text)) for other in after)
         return stays and len(after) >= len(before)
 
     def _damage(self, mended: Sequence[Diagnostic], *, removing: bool = False) -> str | None:
@@ -249,27 +253,27 @@ class _Comparison:
         """
         moved, text = self._moved[path], self._files[path].text
         faulty = [_start(finding, text) for finding in mended if finding.file == path]
-        kept = set()
+        stays = set()
         for start, end in _strings(text):
             edited = moved.edits_in(start, end)
             if not edited:
-                kept.add(moved.range(start, end))
+                stays.add(moved.range(start, end))
             elif removing and len(edited) == 1 and edited[0][0] <= start and end <= edited[0][1]:
                 continue
             elif edited != [(start, end)] and not any(start < place < end for place in faulty):
                 return False
         strings = set(_strings(self._files_after[path].text))
-        return kept <= strings and all(moved.is_written(*string) for string in strings - kept)
+        return stays <= strings and all(moved.is_written(*string) for string in strings - stays)
 
     def revealed(self, mended: Diagnostic) -> Diagnostic | None:
         """Return the first new syntax error after the mended one; None if it has no edit."""
         before, after = _syntax_errors(self._before), _syntax_errors(self._after)
-        known = {(self._start(found), found.message) for found in before if found.file == mended.file}
+        known = {(self._start(earlier), earlier.message) for earlier in before if earlier.file == mended.file}
         text = self._files_after[mended.file].text
-        for found in after:
-            place = _start(found, text) if found.file == mended.file else -1
-            if place >= self._start(mended) and (place, found.message) not in known:
-                return found if found.edits else None
+        for other in after:
+            place = _start(other, text) if other.file == mended.file else -1
+            if place >= self._start(mended) and (place, other.message) not in known:
+                return other if other.edits else None
         return None
 
     def _syntax_error(self, mended: Sequence[Diagnostic], revealed: int) -> Diagnostic | None:
@@ -280,8 +284,8 @@ class _Comparison:
         before, after = _syntax_errors(self._before), _syntax_errors(self._after)
         if len(after) > len(before) - len(mended) + revealed:
             return after[0]
-        places = {(found.file, _start(found, self._files_after[found.file].text), found.message) for found in after}
-        return next((found for found in mended if (found.file, self._start(found), found.message) in places), None)
+        places = {(other.file, _start(other, self._files_after[other.file].text), other.message) for other in after}
+        return next((other for other in mended if (other.file, self._start(other), other.message) in places), None)
 
     def _new_finding(self, mended: Sequence[Diagnostic]) -> Diagnostic | None:
         """Return a finding of a rule on a line with more findings of this rule than before."""
@@ -323,12 +327,12 @@ class _Comparison:
                 if after is None or after.target is None:
                     yield name
                 elif place is not None and (is_kept or is_renamed):
-                    found = declared_after.get(after.target)
-                    if found is None or found[:2] != (place[0], self._moved[place[0]].after(place[1])):
+                    origin = declared_after.get(after.target)
+                    if origin is None or origin[:2] != (place[0], self._moved[place[0]].after(place[1])):
                         yield name
 
 
-def _syntax_errors(checked: Checked) -> list[Diagnostic]:
+def _syntax_errors(checked: CheckedModel) -> list[Diagnostic]:
     return [finding for finding in checked.findings if finding.rule == "syntax"]
 
 

@@ -11,9 +11,9 @@ from robosc.base.files import reading as files
 from robosc.base.files.json_reading import JsonError, json_value
 from robosc.base.recordings import recorded_texts
 from robosc.language.text import decode
-from robosc.run.simulation.script import WAIT, Step, read_script, unfit_data
+from robosc.run.simulation.script import WAIT, ScriptStep, read_script, unfit_data
 from robosc.run.simulation.simulation import LoopSimulation
-from robosc.run.simulation.tracking import ReportError, Tracker
+from robosc.run.simulation.tracker import ReportError, Tracker
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from robosc.analysis.paths import TraceStep
     from robosc.base.diagnostics import Diagnostic
     from robosc.run.simulation.simulation import Simulation
-    from robosc.run.simulation.tracking import Told
+    from robosc.run.simulation.tracker import ReportedMoment
 
 
 class PlayError(Exception):
@@ -35,7 +35,7 @@ class PlayError(Exception):
         self.texts = texts or {}
 
 
-def script_steps(simulation: Simulation, path: str) -> list[Step]:
+def script_steps(simulation: Simulation, path: str) -> list[ScriptStep]:
     """Return the steps of a script or event log. Raises PlayError, and OSError if it can't be read."""
     text, faults = decode(path, files.read(path))
     events = [*simulation.engine.events, WAIT]
@@ -47,7 +47,7 @@ def script_steps(simulation: Simulation, path: str) -> list[Step]:
     return steps
 
 
-def recorded_moments(simulation: Simulation, path: str, node: str | None) -> Iterator[tuple[float, Told]]:
+def recorded_moments(simulation: Simulation, path: str, node: str | None) -> Iterator[tuple[float, ReportedMoment]]:
     """Yield the recorded reports of a node with their times in seconds; the simulation is in the state after each.
 
     `node` is its full name; None means the only node that reports this robot. Raises PlayError, RecordingError, and
@@ -75,21 +75,21 @@ def recorded_moments(simulation: Simulation, path: str, node: str | None) -> Ite
         for reported in followed:
             yield round(report["time"] - began, 3), reported
     if began is None:
-        asked = f"`{node}/state`" if node else "a topic `~/state`"
-        raise PlayError(f"{path} has no reports of this robot on {asked}{f': {fault}' if fault else ''}")
+        source = f"`{node}/state`" if node else "a topic `~/state`"
+        raise PlayError(f"{path} has no reports of this robot on {source}{f': {fault}' if fault else ''}")
 
 
-def counterexample_steps(simulation: Simulation, wanted: str | None) -> tuple[list[Step], str]:
+def counterexample_steps(simulation: Simulation, name_of_property: str | None) -> tuple[list[ScriptStep], str]:
     """Return a counterexample of a property and the explanation of `verify`; None means the first refuted one.
 
     Irrelevant data has the defaults of ROS. Raises PlayError if there is no counterexample.
     """
     verdicts = verify_system(simulation.engine.model)
     properties = [verdict.property for verdict in verdicts]
-    named = [name for name in properties if wanted is None or _is_called(name, wanted)]
-    if wanted is not None and not named:
-        close = get_close_matches(wanted, properties, n=1)
-        raise PlayError(f"unknown property `{wanted}`{f'; did you mean `{close[0]}`?' if close else ''}")
+    named = [name for name in properties if name_of_property is None or _is_called(name, name_of_property)]
+    if name_of_property is not None and not named:
+        close = get_close_matches(name_of_property, properties, n=1)
+        raise PlayError(f"unknown property `{name_of_property}`{f'; did you mean `{close[0]}`?' if close else ''}")
     refuted = next(
         (verdict for verdict in verdicts if verdict.outcome is Outcome.REFUTED and verdict.property in named), None
     )
@@ -98,14 +98,14 @@ def counterexample_steps(simulation: Simulation, wanted: str | None) -> tuple[li
     return _steps(simulation, [*refuted.trace, *refuted.onwards]), f"{refuted.property}: {refuted.explanation}\n"
 
 
-def _is_called(verified: str, wanted: str) -> bool:
+def _is_called(verified: str, name: str) -> bool:
     """Return whether a property matches: by its name in `verify`, or by its name in the model."""
-    return verified == wanted or re.match(rf"property {re.escape(wanted)}(?!\w)", verified) is not None
+    return verified == name or re.match(rf"property {re.escape(name)}(?!\w)", verified) is not None
 
 
-def _steps(simulation: Simulation, trace: Sequence[TraceStep]) -> list[Step]:
+def _steps(simulation: Simulation, trace: Sequence[TraceStep]) -> list[ScriptStep]:
     inputs = {event: simulation.data.inputs(event, {}) for event in {step.event for step in trace}}
     return [
-        Step(number, step.event, simulation.data.shaped(step.event, {**inputs[step.event], **step.inputs}))
+        ScriptStep(number, step.event, simulation.data.shape(step.event, {**inputs[step.event], **step.inputs}))
         for number, step in enumerate(trace, 1)
     ]

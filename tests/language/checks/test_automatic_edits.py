@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from robosc.base.diagnostics import Diagnostic, Edit
 from robosc.language.checks import check
-from robosc.language.checks.fixing import Safety, objection, safe_edits, safety_of
+from robosc.language.checks.automatic_edits import Safety, objection, safe_edits, safety_of
 from robosc.language.reading import Reading, read
 from robosc.language.text import Documents, Text
 from robosc.language.tokens import Kind, Tokens

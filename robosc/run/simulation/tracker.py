@@ -22,7 +22,7 @@ class ReportError(ValueError):
 
 
 @dataclass(frozen=True)
-class Told:
+class ReportedMoment:
     """Event that has happened, None if only a state was reported; the state after it, and the transitions taken.
 
     `variables` are the reported values of that state, by `Component.variable`, also of those that the
@@ -68,7 +68,7 @@ class Tracker:
         self.timers = Timers(self.engine, 0)
         self._began = None
 
-    def report(self, report: Any) -> Iterator[Told]:
+    def report(self, report: Any) -> Iterator[ReportedMoment]:
         """Yield the events of a report; the engine is in the state after each. Raises ReportError."""
         if not isinstance(report, dict):
             raise ReportError("it is not an object")
@@ -96,14 +96,14 @@ class Tracker:
 
     def _ends(self, report: Mapping[str, Any]) -> dict[sct.Plant | sct.DiscreteVariable, Value]:
         """Return the states and variables of the components in a report."""
-        robot, told = report.get("robot"), report.get("components")
+        robot, components = report.get("robot"), report.get("components")
         if robot != self.engine.model.name:
             raise ReportError(f"the report is of the robot `{robot}`, the model is `{self.engine.model.name}`")
         ends: dict[sct.Plant | sct.DiscreteVariable, Value] = {}
         for name, plant in self._components.items():
             try:
-                ends[plant] = told[name]["state"]  # type: ignore[index]
-                ends |= {variable: told[name]["variables"][variable.name] for variable in plant.variables}  # type: ignore[index]
+                ends[plant] = components[name]["state"]  # type: ignore[index]
+                ends |= {variable: components[name]["variables"][variable.name] for variable in plant.variables}  # type: ignore[index]
             except (KeyError, TypeError):
                 raise ReportError(f"the report has no state of `{name}`") from None
         try:
@@ -118,7 +118,7 @@ class Tracker:
         ends: Mapping[sct.Plant | sct.DiscreteVariable, Value],
         variables: Mapping[str, Any],
         now: int,
-    ) -> Iterator[Told]:
+    ) -> Iterator[ReportedMoment]:
         self.timers.at(now)
         paths = self._paths(events, ends)
         for number, event in enumerate(events):
@@ -132,10 +132,10 @@ class Tracker:
                 after |= ends
             self.engine.state = self.engine.state_with(after)
             edges = tuple(edge for edge, _ in taken.values() if edge.source is not None)
-            yield Told(event, self.engine.state, edges, variables if is_last else {})
+            yield ReportedMoment(event, self.engine.state, edges, variables if is_last else {})
         if not events:
             self.engine.state = self.engine.state_with(ends)
-            yield Told(None, self.engine.state, (), variables)
+            yield ReportedMoment(None, self.engine.state, (), variables)
 
     def _paths(
         self, events: Sequence[str], ends: Mapping[sct.Plant | sct.DiscreteVariable, Value]
@@ -145,15 +145,15 @@ class Tracker:
         for number, event in enumerate(events):
             for plant in self._moves.get(event, ()):
                 taking_part.setdefault(plant, []).append(number)
-        found: list[dict[sct.Plant, tuple[sct.Edge, int]]] = [{} for _ in events]
+        paths: list[dict[sct.Plant, tuple[sct.Edge, int]]] = [{} for _ in events]
         for plant, numbers in taking_part.items():
             moves = [self._moves[events[number]][plant] for number in numbers]
             end = next(
                 (place for place, location in enumerate(plant.locations) if location.name == ends.get(plant)), None
             )
             for number, step in zip(numbers, _path(moves, self.engine.location(plant), end), strict=True):
-                found[number][plant] = step
-        return found
+                paths[number][plant] = step
+        return paths
 
 
 def _move(edge: sct.Edge) -> _Move:

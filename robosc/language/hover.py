@@ -7,11 +7,11 @@ from textwrap import dedent
 from typing import TYPE_CHECKING, Any
 
 from robosc.base.ros_types import DefinitionError, Section
+from robosc.language.document_symbols import span
 from robosc.language.interface_types import is_made
-from robosc.language.outlining import span
 from robosc.model import expression as ex
 from robosc.model import robosc as rsc
-from robosc.model.semantics.communication import carried, events, section_of
+from robosc.model.semantics.communication import carrying_events, events, section_of
 from robosc.model.semantics.expansion import constant_value
 from robosc.model.semantics.naming import enumeration
 
@@ -192,7 +192,7 @@ def _meaning(reading: Reading, file: File, element: Any) -> Iterator[str]:  # no
         case rsc.Component() if element.parameters:
             yield "Template: components use it with `is` or `import`."
         case rsc.Requirement() | rsc.Property():
-            yield _stated(file, element)
+            yield _statements(file, element)
 
 
 def _state(reading: Reading, file: File, state: rsc.State) -> Iterator[str]:
@@ -216,9 +216,9 @@ def _state(reading: Reading, file: File, state: rsc.State) -> Iterator[str]:
 
 def _flags(state: Any, owner: str) -> str:
     words = [word for word, is_set in (("initial", state.initial), ("marked", state.marked)) if is_set]
-    told = f"{' and '.join(words).capitalize()} state" if words else "State"
+    phrase = f"{' and '.join(words).capitalize()} state" if words else "State"
     marked = ": the supervisor ensures that a marked state can always be reached" if state.marked else ""
-    return f"{told} {owner}{marked}."
+    return f"{phrase} {owner}{marked}."
 
 
 def _communication(file: File, communication: rsc.CommunicationType) -> Iterator[str]:
@@ -233,7 +233,7 @@ def _communication(file: File, communication: rsc.CommunicationType) -> Iterator
         kind = "Service" if isinstance(communication, rsc.Service) else "Action"
         names = enumeration(f"`{row.name}`" for row in events(communication) if row.name)
         yield f"{kind} that the controller calls. Requirements can forbid the request. Its events are {names}."
-    for row, declared in carried(communication):
+    for row, declared in carrying_events(communication):
         if not isinstance(declared, rsc.NoneDataType):
             yield f"- data of its {row.name}: `{type_text(declared)}`"
     if communication.identifier:
@@ -244,7 +244,7 @@ def _communication(file: File, communication: rsc.CommunicationType) -> Iterator
 
 def _restricted(reading: Reading, communication: rsc.CommunicationType) -> Iterator[str]:
     """List the requirements that mention a communication."""
-    found: dict[Any, str] = {}
+    texts: dict[Any, str] = {}
     for file, name in _uses(reading, communication):
         around = name.user
         while around is not None and not isinstance(around, rsc.Requirement):
@@ -253,12 +253,12 @@ def _restricted(reading: Reading, communication: rsc.CommunicationType) -> Itera
             where = f"line {file.text.span(name.start, name.end).line}"
             if file is not reading.file and file.base is not None:
                 where += f" of `{file.base.name}`"
-            found.setdefault(around, f"- `{_source(file, around)}`, {where}")
-    if found:
-        yield "Restricted by:\n" + "\n".join(found.values())
+            texts.setdefault(around, f"- `{_source(file, around)}`, {where}")
+    if texts:
+        yield "Restricted by:\n" + "\n".join(texts.values())
 
 
-def _stated(file: File, element: Any) -> str:
+def _statements(file: File, element: Any) -> str:
     """Return the demand of a requirement or property as a sentence."""
     target = _source(file, getattr(element, "target", None)).strip("{} ")
     condition = _source(file, getattr(element, "condition", None))

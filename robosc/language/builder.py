@@ -38,9 +38,9 @@ class Name:
 @cache
 def element_class(rule: str) -> Any | None:
     """Return the class of a rule's elements, or None for an abstract rule or a rule that only matches words."""
-    found = getattr(rsc, rule, None) or getattr(ex, rule, None)
-    eclass = getattr(found, "eClass", None)
-    return found if eclass is not None and not eclass.abstract else None
+    candidate = getattr(rsc, rule, None) or getattr(ex, rule, None)
+    eclass = getattr(candidate, "eClass", None)
+    return candidate if eclass is not None and not eclass.abstract else None
 
 
 class Builder:
@@ -73,14 +73,14 @@ class Builder:
         rule = node.rule_name
         if rule == "Expression":
             return self._expression(node)
-        made = element_class(rule)
-        if made is not None:
-            return self._element(node, made)
+        kind = element_class(rule)
+        if kind is not None:
+            return self._element(node, kind)
         return self._build(next(part for part in node if part.rule_name))
 
-    def _element(self, node: Node, made: Any) -> Any:
+    def _element(self, node: Node, kind: Any) -> Any:
         checkpoint()
-        element = made(source=self._source(node.position, node.position_end))
+        element = kind(source=self._source(node.position, node.position_end))
         for child in node if isinstance(node, list) else ():
             feature = attribute(child)
             if feature is not None:
@@ -131,8 +131,8 @@ class Builder:
         def reduce() -> None:
             right, _, end = operands.pop()
             left, start, _ = operands.pop()
-            made = waiting.pop()
-            operands.append((made(left=left, right=right, source=self._source(start, end)), start, end))
+            kind = waiting.pop()
+            operands.append((kind(left=left, right=right, source=self._source(start, end)), start, end))
 
         for (binary,) in node[1:]:
             operator = element_class(binary.rule_name)
@@ -188,12 +188,12 @@ class Builder:
         return value
 
     def _string(self, node: Node) -> str:
-        def replace(found: re.Match[str]) -> str:
-            code = found[1]
+        def replace(match: re.Match[str]) -> str:
+            code = match[1]
             if len(code) > 1:
                 return chr(int(code[1:], 16))
             if code not in _ESCAPES:
-                start = node.position + 1 + found.start()
+                start = node.position + 1 + match.start()
                 hint = Repair("write `\\\\` for a backslash", f"\\\\{code}")
                 self._fault(node, f"`\\{code}` is not an escape sequence", hint, start)
             return _ESCAPES.get(code, code)

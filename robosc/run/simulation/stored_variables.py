@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 from robosc.model import expression as ex
 from robosc.model import rosgraph, sct
 from robosc.model.semantics.communication import happens_anyway
-from robosc.model.semantics.definition import reported
+from robosc.model.semantics.definition import reported_variables
 from robosc.model.semantics.evaluation import evaluate
 from robosc.model.semantics.messages import reads_elements
 from robosc.model.semantics.operators import UnreadableError
 from robosc.model.semantics.roles import event_name
-from robosc.run.runtime.core.event_log import shown
-from robosc.run.runtime.core.node_data import NodeData, bounded
+from robosc.run.runtime.core.event_log import format_value
+from robosc.run.runtime.core.node_data import NodeData, within_range
 from robosc.run.simulation.data import reason_of, whole
 from robosc.run.simulation.unreadable import UnknownError, read
 
@@ -33,7 +33,7 @@ Values = dict[str, bool | int | float | str | None]
 _NOT_GIVEN = object()
 
 
-class Kept:
+class StoredVariables:
     """Tracker of those variables of components that reports on `~/state` show and the supervisor does not need."""
 
     def __init__(self, engine: Engine, graph: rosgraph.RosGraph | None) -> None:
@@ -46,7 +46,7 @@ class Kept:
         if graph is None:
             return
         self._node = NodeData(graph, engine)
-        shown = reported(graph)
+        shown = reported_variables(graph)
         for plant in engine.model.plants:
             if plant.kind == sct.PlantKind.behaviour:
                 self._names |= {
@@ -78,11 +78,13 @@ class Kept:
                 if assigned.variable in self._names:
                     value = self._value(assigned.value, values, data) if taken else None
                     kind = assigned.variable.type
-                    changed[self._names[assigned.variable]] = None if value is None else _finite(bounded(value, kind))
+                    changed[self._names[assigned.variable]] = (
+                        None if value is None else _finite(within_range(value, kind))
+                    )
         self._engine.state = now
         return {**values, **changed}
 
-    def told(self, values: Values, variables: Mapping[str, Any]) -> Values:
+    def update(self, values: Values, variables: Mapping[str, Any]) -> Values:
         """Return the values updated by a report, by `Component.variable`; other variables of it are ignored."""
         known = {name: value for name, value in variables.items() if name in self.initial}
         return {
@@ -92,18 +94,18 @@ class Kept:
 
     def _value(self, expression: ex.Expression, values: Values, data: Mapping[str, Any]) -> Any:
         """Return the value of an expression; None if something that it reads is unknown."""
-        given = whole(data["value"], expression) if "value" in data else _NOT_GIVEN
+        whole_data = whole(data["value"], expression) if "value" in data else _NOT_GIVEN
         try:
-            return evaluate(expression, partial(self._read, values, given))
+            return evaluate(expression, partial(self._read, values, whole_data))
         except (UnknownError, UnreadableError):
             return None
 
-    def _read(self, values: Values, data: Any, reference: ex.Expression, *given: Any) -> Any:
+    def _read(self, values: Values, data: Any, reference: ex.Expression, *indices: Any) -> Any:
         match reference:
             case rosgraph.NodeVariableReference():
                 return self._variable(reference.variable, values)
             case rosgraph.ConversionCall():
-                return self._literal(reference.conversion, read(data, reference.argument, *given), values)
+                return self._literal(reference.conversion, read(data, reference.argument, *indices), values)
             case rosgraph.ErrorReason():
                 return self._node.value(reference)
             case ex.EnumerationLiteralReference():
@@ -112,15 +114,15 @@ class Kept:
                 return self._node.is_in(reference.location)
             case sct.VariableReference():
                 return self._node.value(reference)
-        return self._reached(data, reference, *given)
+        return self._reached(data, reference, *indices)
 
-    def _reached(self, data: Any, reference: ex.Expression, *given: Any) -> Any:
+    def _reached(self, data: Any, reference: ex.Expression, *indices: Any) -> Any:
         """Return the value that a reference reads of data.
 
         The log of an end that happens anyway leaves out what could not be read: an element there is `UnreadableError`.
         """
         try:
-            return read(data, reference, *given)
+            return read(data, reference, *indices)
         except UnknownError:
             if self._happens_anyway and reads_elements(reference):
                 raise UnreadableError("the array has no such element") from None
@@ -153,5 +155,5 @@ class Kept:
 def _finite(value: Any) -> bool | int | float | str | None:
     if value is None or (isinstance(value, float) and not math.isfinite(value)):
         return None
-    told: bool | int | float | str | None = shown(value)  # type: ignore[assignment]
-    return told
+    external: bool | int | float | str | None = format_value(value)  # type: ignore[assignment]
+    return external

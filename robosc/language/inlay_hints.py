@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from robosc.language.outlining import own_elements, span
+from robosc.language.document_symbols import own_elements, span
 from robosc.language.units import units
 from robosc.model import robosc as rsc
 from robosc.model.semantics.typing import UNKNOWN, ArrayType, ObjectType, Type, value_type
@@ -29,16 +29,16 @@ class Note(NamedTuple):
 
 def notes(file: File, ros_types: RosTypes) -> list[Note]:
     """Return the hints of a text in order of their offsets."""
-    found = [note for element in own_elements(file) for note in _notes(file, element)]
-    return sorted([*found, *(Note(offset, f" {unit}", is_type=True) for offset, unit in units(file, ros_types))])
+    own = [note for element in own_elements(file) for note in _notes(file, element)]
+    return sorted([*own, *(Note(offset, f" {unit}", is_type=True) for offset, unit in units(file, ros_types))])
 
 
 def _notes(file: File, element: Any) -> Iterator[Note]:
     match element:
         case rsc.Access() if element.value:
-            found = value_type(element)
-            if found is not None and found != UNKNOWN:
-                yield Note(span(file, element)[0] + len("value"), f": {_written(found)}", is_type=True)
+            kind = value_type(element)
+            if kind is not None and kind != UNKNOWN:
+                yield Note(span(file, element)[0] + len("value"), f": {_type_text(kind)}", is_type=True)
         case rsc.InstantiatedComponent() | rsc.ImportedComponent() if element.definition is not None:
             yield from _of_arguments(file, element.arguments, element.definition.parameters)
         case rsc.ComplexDataTypeReference() if isinstance(element.type, rsc.EnumDataType):
@@ -55,7 +55,7 @@ def _of_arguments(file: File, arguments: Sequence[rsc.Argument], parameters: Seq
         yield Note(span(file, argument)[0], f"{parameter.name}:", is_type=False)
 
 
-def _written(found: Type) -> str:
-    if isinstance(found, ArrayType):
-        return f"array({_written(found.element)})"
-    return found.written if isinstance(found, ObjectType) else str(found).removeprefix("enum ")
+def _type_text(kind: Type) -> str:
+    if isinstance(kind, ArrayType):
+        return f"array({_type_text(kind.element)})"
+    return kind.qualified_name if isinstance(kind, ObjectType) else str(kind).removeprefix("enum ")

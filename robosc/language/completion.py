@@ -21,7 +21,7 @@ from robosc.model import robosc as rsc
 from robosc.model.reflection import literals
 from robosc.model.semantics.communication import RUNNING_WORD, event_names, sent_type
 from robosc.model.semantics.failures import FAILURE, FAILURES, reasons
-from robosc.model.semantics.naming import written
+from robosc.model.semantics.naming import escape_keyword
 from robosc.model.semantics.operators import FUNCTIONS
 from robosc.model.semantics.typing import ObjectType, access_types, declared_type, provided_data_type, value_type
 
@@ -72,7 +72,7 @@ class Proposal:
 def proposals(
     content: str,
     offset: int,
-    read: Callable[[str], Reading],
+    read_text: Callable[[str], Reading],
     ros_types: RosTypes,
     libraries: Callable[[], Iterable[str]],
 ) -> tuple[int, int, list[Proposal]]:
@@ -82,15 +82,15 @@ def proposals(
     """
     start = offset - len(_WORD.match(content[:offset][::-1])[0])  # type: ignore[index]
     end = offset + len(re.match(r"\w*", content[offset:])[0])  # type: ignore[index]
-    if any(found.start() < start < _end(found) for found in _STRING_OR_COMMENT.finditer(content)):
+    if any(match.start() < start < _end(match) for match in _STRING_OR_COMMENT.finditer(content)):
         return start, end, []
-    block, wanted = _wanted(content[:start])
-    found = dict.fromkeys(_words(block, wanted))
-    if {"Name", "UnreservedName"} & wanted:
+    block, expected = _expected_words(content[:start])
+    results = dict.fromkeys(_words(block, expected))
+    if {"Name", "UnreservedName"} & expected:
         for text in dict.fromkeys(_with_name(content, start, end)):
-            found |= dict.fromkeys(_named(read(text), start, ros_types, libraries))
-    found |= dict.fromkeys(_ros_names(content, start, ros_types))
-    return start, end, list(found)
+            results |= dict.fromkeys(_named(read_text(text), start, ros_types, libraries))
+    results |= dict.fromkeys(_ros_names(content, start, ros_types))
+    return start, end, list(results)
 
 
 def topic_at(content: str, offset: int) -> tuple[int, int] | None:
@@ -105,16 +105,16 @@ def topic_at(content: str, offset: int) -> tuple[int, int] | None:
     return offset - len(before[2]), offset + (behind.end() if behind else 0)
 
 
-def _end(found: re.Match[str]) -> int:
+def _end(match: re.Match[str]) -> int:
     """Return the offset behind a string or comment; one that reaches the end of its line includes that end."""
-    is_open = found[0].startswith("//") or not found[0].endswith(("*/", '"', "'")) or len(found[0]) == 1
-    return found.end() + is_open
+    is_open = match[0].startswith("//") or not match[0].endswith(("*/", '"', "'")) or len(match[0]) == 1
+    return match.end() + is_open
 
 
 # Words
 
 
-def _wanted(before: str) -> tuple[Block | None, set[str]]:
+def _expected_words(before: str) -> tuple[Block | None, set[str]]:
     """Return the item in which a text ends, and the words and rules that the grammar accepts there."""
     tokens = Tokens(before)
     if too_complex(tokens) is not None:
@@ -125,9 +125,9 @@ def _wanted(before: str) -> tuple[Block | None, set[str]]:
     for item in items:
         text[item.start - block.start : item.end - block.start] = " " * (item.end - item.start)
     own = "".join(text)
-    found = parse(f"{own} \0", block.level.rule if block.level else "Base")
-    at_end = isinstance(found, Failure) and found.position >= len(own.rstrip())
-    return block, set(found.expected) if at_end else set()
+    parsed = parse(f"{own} \0", block.level.rule if block.level else "Base")
+    at_end = isinstance(parsed, Failure) and parsed.position >= len(own.rstrip())
+    return block, set(parsed.expected) if at_end else set()
 
 
 def _block(tokens: Tokens, index: int) -> Block:
@@ -140,15 +140,15 @@ def _block(tokens: Tokens, index: int) -> Block:
         block = inner
 
 
-def _words(block: Block | None, wanted: Iterable[str]) -> Iterator[Proposal]:
-    for word in sorted(wanted):
+def _words(block: Block | None, expected: Iterable[str]) -> Iterator[Proposal]:
+    for word in sorted(expected):
         if word.isalpha() and word.islower() and word != "end":
             yield Proposal(word, starts=bool(block and any(word in level.starters for level in _levels(block))))
         elif word == "Quantifier":
             yield from map(Proposal, literals(rsc.Quantifier))
         elif word == "BuiltIn":
             yield from map(Proposal, FUNCTIONS)
-    if "end" in wanted and block is not None and block.level is not None:
+    if "end" in expected and block is not None and block.level is not None:
         yield from (Proposal(word, starts=True) for word in sorted(block.level.starters))
 
 
@@ -196,14 +196,14 @@ def _going_on(text: str, rule: str, preferred: str) -> str | None:
     """Return the missing rest of an item of a rule, or None if it cannot be determined."""
     added = ""
     for _ in range(20):
-        found = parse(text + added, rule)
-        if not isinstance(found, Failure):
+        parsed = parse(text + added, rule)
+        if not isinstance(parsed, Failure):
             return added
-        if found.position < len((text + added).rstrip()):
+        if parsed.position < len((text + added).rstrip()):
             return None
-        wanted = set(found.expected)
+        expected = set(parsed.expected)
         words = {preferred: preferred, **_GOING_ON}
-        following = next((phrase for word, phrase in words.items() if word in wanted), None)
+        following = next((phrase for word, phrase in words.items() if word in expected), None)
         if following is None:
             return None
         added += f" {following}"
@@ -224,8 +224,8 @@ def _named(
             if _NAME in name.text and name.start <= start < name.end:
                 if isinstance(element, rsc.ImportedComponent) and feature == "library":
                     yield from map(Proposal, libraries())
-                for key, found in _candidates(linker, file, element, feature, names):
-                    yield Proposal(".".join(map(written, key.split("."))), found)
+                for key, candidate in _candidates(linker, file, element, feature, names):
+                    yield Proposal(".".join(map(escape_keyword, key.split("."))), candidate)
 
 
 def _candidates(
@@ -274,16 +274,20 @@ def _definitions(linker: Linker, file: File, element: Any, feature: str) -> Iter
         case rsc.ImportedComponent() if feature == "definition":
             yield from by_name(_components_of(element.library)).items()
         case rsc.InstantiatedComponent():
-            yield from ((name, found) for name, found in components.items() if found.parameters)
+            yield from ((name, component) for name, component in components.items() if component.parameters)
         case rsc.InstanceQuantifier():
-            yield from ((name, found) for name, found in components.items() if found.parameters)
+            yield from ((name, component) for name, component in components.items() if component.parameters)
         case rsc.TopicRemapping():
             own = linker.around(element, rsc.Component)
             yield from ((linker.scope.communications(own) if own is not None else None) or {}).items()
 
 
 def _components_of(library: Any) -> list[Any]:
-    return [] if library is None else [found for found in library.definitions if isinstance(found, rsc.Component)]
+    return (
+        []
+        if library is None
+        else [definition for definition in library.definitions if isinstance(definition, rsc.Component)]
+    )
 
 
 def _usable(linker: Linker, kind: type[Any]) -> Iterator[tuple[str, Any]]:
@@ -296,8 +300,8 @@ def _communications(
 ) -> Iterator[tuple[str, Any]]:
     if feature == "communicationType" and "component" in names:
         component = reference.component
-        found = (linker.scope.communications(component) if component is not None else None) or {}
-        yield from ((name, other) for name, other in found.items() if _fits(reference, other))
+        communications = (linker.scope.communications(component) if component is not None else None) or {}
+        yield from ((name, other) for name, other in communications.items() if _fits(reference, other))
         return
     own = linker.around(reference, rsc.Component)
     inner = (linker.scope.communications(own) if own is not None else None) or {}
@@ -341,22 +345,22 @@ def _accessible(
         elif first.text in (automata := linker.automata(access)):
             yield from by_name(automata[first.text].states).items()
         return
-    found: dict[str, Any] = {}
+    accessible: dict[str, Any] = {}
     if linker.expects_failure(access):
-        found |= dict.fromkeys(_reasons(access))
-    found |= {**linker.elements(access), **linker.parameters(access)}
+        accessible |= dict.fromkeys(_reasons(access))
+    accessible |= {**linker.elements(access), **linker.parameters(access)}
     user = access.eContainer()
     if isinstance(user, rsc.Argument):
-        found |= _parameters(user)
+        accessible |= _parameters(user)
     elif linker.around(access, rsc.EnumDataType) is None:
         own = linker.around(access, rsc.Component)
         members = (linker.scope.members(own) if own is not None else None) or {}
-        found |= {**linker.templates(access), **members, **linker.components(access), **linker.automata(access)}
-        found |= dict(_running(linker, own)) if own is not None else {}
+        accessible |= {**linker.templates(access), **members, **linker.components(access), **linker.automata(access)}
+        accessible |= dict(_running(linker, own)) if own is not None else {}
     for kind in (rsc.NamedExpression, rsc.EnumValue, rsc.Function):
         for name, element in _usable(linker, kind):
-            found.setdefault(name, element)
-    yield from found.items()
+            accessible.setdefault(name, element)
+    yield from accessible.items()
 
 
 def _reasons(access: rsc.Access) -> Sequence[str]:

@@ -24,7 +24,7 @@ _DECIDED = (engine.Role.cancel, engine.Role.trigger, engine.Role.silent)
 
 
 @dataclass
-class Shown:
+class TraceCoverage:
     """Coverage of traces, over all states that they reach, including the first and the last."""
 
     #: Number of states in which the guard of each event was true, and false.
@@ -41,10 +41,10 @@ class Shown:
         """Return the coverage of the robot."""
         behaviours = [plant for plant in model.plants if plant.kind == sct.PlantKind.behaviour]
         written = [edge for plant in behaviours for edge in edges_of(plant) if edge.source is not None]
-        asked = [event for event in executed.events if event.role in _DECIDED]
+        decided = [event for event in executed.events if event.role in _DECIDED]
         guards = [
             {"event": event.name, "true": self.enabled[event.name], "false": self.disabled[event.name]}
-            for event in asked
+            for event in decided
         ]
         return {
             "events": self.events,
@@ -55,15 +55,15 @@ class Shown:
         }
 
 
-def play(models: Models, traces: Mapping[str, str]) -> Shown:
+def play(models: Models, traces: Mapping[str, str]) -> TraceCoverage:
     """Play event traces (path to text), each from the initial state."""
-    shown = Shown()
+    shown = TraceCoverage()
     for path, text in traces.items():
         _play(models, path, text, shown)
     return shown
 
 
-def _play(models: Models, path: str, text: str, shown: Shown) -> None:
+def _play(models: Models, path: str, text: str, shown: TraceCoverage) -> None:
     simulation = Simulation(models.sct, models.rosgraph, models.ros_types)
     inside: Engine = simulation.engine
     transitions = Transitions(inside)
@@ -82,7 +82,7 @@ def _play(models: Models, path: str, text: str, shown: Shown) -> None:
             name = event_name(requirement.event)
             holds = possible[name]
             if holds is None or holds():
-                verdict = shown.forbidden if requirement in inside.failing(name) else shown.allowed
+                verdict = shown.forbidden if requirement in inside.failing_requirements(name) else shown.allowed
                 verdict.setdefault(requirement, (path, line))
 
     look(0)
@@ -92,7 +92,7 @@ def _play(models: Models, path: str, text: str, shown: Shown) -> None:
         if simulation.perform(step.event, step.data).accepted:
             after = inside.saved
             inside.restore((before[0], after[1]))
-            shown.taken.update(transitions.taken(step.event))
+            shown.taken.update(transitions.taken_transitions(step.event))
             inside.restore(after)
             shown.events += 1
             look(step.line)

@@ -10,7 +10,7 @@ from robosc.base.diagnostics import Repair
 from robosc.language.grammar import first, following, is_reserved, words_of
 from robosc.language.outline import COMPONENT, DEFINITIONS, RULES
 from robosc.language.tokens import Kind, Token
-from robosc.model.semantics.naming import ROBOSC_QUANTIFIERS, enumeration, written
+from robosc.model.semantics.naming import ROBOSC_QUANTIFIERS, enumeration, escape_keyword
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Sequence
@@ -126,7 +126,7 @@ _GROUPS = (
 )
 
 
-def found(token: Token) -> str:
+def quote_token(token: Token) -> str:
     """Return a token as a message quotes it."""
     if token.kind is Kind.END:
         return "the end of the file"
@@ -134,9 +134,9 @@ def found(token: Token) -> str:
     return f"`{text}`" if text.isprintable() and not text.isspace() else f"the character U+{ord(token.text[0]):04X}"
 
 
-def expected(wanted: Iterable[str], level: Level | None) -> str:
+def enumerate_expected(expectations: Iterable[str], level: Level | None) -> str:
     """Return the expected words as an enumeration; `end` stands for the next item of the level."""
-    words = [word for word in wanted if word]  # A negative lookahead has no word.
+    words = [word for word in expectations if word]  # A negative lookahead has no word.
     for name, rule, core in _GROUPS:
         if core <= set(words):
             words = [name if word in core else word for word in words if word in core or word not in _alike(rule)]
@@ -157,7 +157,7 @@ def closest(word: str, known: Iterable[str], *, cutoff: float) -> str | None:
 def did_you_mean(word: str, known: Iterable[str], *, cutoff: float) -> Repair | None:
     """Return the repair that replaces a word of a RoboSC text by the closest name, or None if no name is close."""
     close = closest(word, known, cutoff=cutoff)
-    return Repair(f"did you mean `{written(close)}`?", written(close)) if close else None
+    return Repair(f"did you mean `{escape_keyword(close)}`?", escape_keyword(close)) if close else None
 
 
 def _alike(rule: str) -> set[str]:
@@ -165,22 +165,24 @@ def _alike(rule: str) -> set[str]:
     return {spelling for word in first(rule) for spelling in (word, word.partition("(?!")[0])}
 
 
-def hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> Repair | str | None:
+def hint(tokens: Tokens, index: int, expectations: Sequence[str], block: Block) -> Repair | str | None:
     """Return a repair or hint for the faulty token of an item, or None if there is none."""
     token, before = tokens[index], tokens[index - 1]
-    symbols = _symbols(token, wanted)
-    if index < block.after and _is_name(tokens, index, wanted):
-        return _as_name(tokens, index, wanted)
-    stated = _foreign(tokens, index) if token.text in _FOREIGN else _statement_hint(tokens, index, wanted, block)
-    if stated is not None:
-        return stated
-    if before.is_name and before.text in wanted and is_reserved(before.text):
+    symbols = _symbols(token, expectations)
+    if index < block.after and _is_name(tokens, index, expectations):
+        return _as_name(tokens, index, expectations)
+    definite = (
+        _foreign(tokens, index) if token.text in _FOREIGN else _statement_hint(tokens, index, expectations, block)
+    )
+    if definite is not None:
+        return definite
+    if before.is_name and before.text in expectations and is_reserved(before.text):
         return f"is a name missing before `{before.text}`?"
-    if "then" in wanted:
+    if "then" in expectations:
         return _CHOICE
     if before.is_keyword(",") and token.kind is Kind.SYMBOL:
         return Repair("leave out the comma before it", elsewhere=((before.start, before.end, ""),))
-    if "->" in wanted and block.level is RULES and (token.is_first or before.text == "default"):
+    if "->" in expectations and block.level is RULES and (token.is_first or before.text == "default"):
         return _value_hint(token, has_value=index < block.after and not token.is_keyword("}"))
     if token.text in {"=", ":", ":=", "=>", "->"} and len(symbols) == 1:
         return Repair(f"write `{symbols[0]}`", symbols[0])
@@ -188,13 +190,13 @@ def hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> Rep
         return _both_sides(tokens, index)
     if token.kind is Kind.NUMBER and not token.text.replace(".", "").isdigit():
         return _without_exponent(tokens, index)
-    return _word_hint(tokens, index, wanted, block) if token.kind is Kind.WORD else _MEANT.get(token.text)
+    return _word_hint(tokens, index, expectations, block) if token.kind is Kind.WORD else _MEANT.get(token.text)
 
 
-def _is_name(tokens: Tokens, index: int, wanted: Sequence[str]) -> bool:
+def _is_name(tokens: Tokens, index: int, expectations: Sequence[str]) -> bool:
     """Return whether a keyword was meant as a name, and no name is missing before it."""
     token, before, after = tokens[index], tokens[index - 1], tokens[index + 1]
-    if token.kind is not Kind.WORD or "UnreservedName" not in wanted:
+    if token.kind is not Kind.WORD or "UnreservedName" not in expectations:
         return False
     if not is_reserved(token.text) or token.text not in following():
         return False
@@ -203,25 +205,25 @@ def _is_name(tokens: Tokens, index: int, wanted: Sequence[str]) -> bool:
     return after.is_first or after.kind is not Kind.WORD or after.text in words_of("Base")
 
 
-def _as_name(tokens: Tokens, index: int, wanted: Collection[str]) -> Repair:
+def _as_name(tokens: Tokens, index: int, expectations: Collection[str]) -> Repair:
     """Return the hint for a keyword meant as a name.
 
     At a type it is an edit only if the text declares such a name.
     """
     written_so = f"^{tokens[index].text}"
-    is_type = any(name == "a type" and core <= set(wanted) for name, _, core in _GROUPS)
+    is_type = any(name == "a type" and core <= set(expectations) for name, _, core in _GROUPS)
     is_edit = not is_type or any(token.text == written_so for token in tokens)
     return Repair(f"write `{written_so}` to use a keyword as a name", written_so if is_edit else None)
 
 
-def misread(tokens: Tokens, index: int, wanted: Collection[str]) -> int:
+def misread(tokens: Tokens, index: int, expectations: Collection[str]) -> int:
     """Return the index of the token that was meant as a name.
 
     That is the token before `index` if it was read as a keyword, else the one at `index`.
     """
     before, token = tokens[index - 1], tokens[index]
     around = tokens[index - 2]
-    is_event = set(wanted) == {"to", "from"} and not around.is_keyword("on")
+    is_event = set(expectations) == {"to", "from"} and not around.is_keyword("on")
     is_target = around.is_keyword("requirement", ":") and token.is_keyword("needs", "after")
     is_literal = before.is_keyword("value", "true", "false", "if") and is_target
     return index - 1 if is_event or is_literal else index
@@ -233,18 +235,18 @@ def _foreign(tokens: Tokens, index: int) -> Repair:
     A quotation mark is replaced together with its counterpart.
     """
     own = _FOREIGN[tokens[index].text]
-    said = f"write `{own}`" if own else "leave it out: RoboSC has no semicolons"
+    hint_text = f"write `{own}`" if own else "leave it out: RoboSC has no semicolons"
     if own != '"':
-        return Repair(said, own)
+        return Repair(hint_text, own)
     others = _other_quotes(tokens, index)
     # An unclosed string would reach the end of the line, and a string around a comment would swallow it.
     is_whole = others and not tokens.has_comment(tokens[index].start, others[-1][1])
-    return Repair(said, own, elsewhere=others) if is_whole else Repair(said)
+    return Repair(hint_text, own, elsewhere=others) if is_whole else Repair(hint_text)
 
 
-def _before(token: Token, said: str, text: str) -> Repair:
+def _before(token: Token, hint_text: str, text: str) -> Repair:
     """Return a hint that inserts text before a token."""
-    return Repair(said, elsewhere=((token.start, token.start, f"{text} "),))
+    return Repair(hint_text, elsewhere=((token.start, token.start, f"{text} "),))
 
 
 def _value_hint(token: Token, *, has_value: bool) -> Repair | str:
@@ -255,87 +257,87 @@ def _value_hint(token: Token, *, has_value: bool) -> Repair | str:
 
 def _other_quotes(tokens: Tokens, index: int) -> tuple[tuple[int, int, str], ...]:
     """Return edits for the other foreign quotation marks in the line."""
-    found = []
+    edits = []
     other = index + 1
     while other < len(tokens) - 1 and not tokens[other].is_first:
         if _FOREIGN.get(tokens[other].text) == '"':
-            found.append((tokens[other].start, tokens[other].end, '"'))
+            edits.append((tokens[other].start, tokens[other].end, '"'))
         other += 1
-    return tuple(found)
+    return tuple(edits)
 
 
 def _both_sides(tokens: Tokens, index: int) -> Repair:
     """Return the hint for a number without digits on one side of its point, and the edit that adds a zero."""
-    said = "a number has digits on both sides of its point, such as `0.5` or `1.0`"
+    hint_text = "a number has digits on both sides of its point, such as `0.5` or `1.0`"
     point = next((at for at in (index, index - 1) if tokens[at].text == "."), index)
     before, token, after = tokens[point - 1], tokens[point], tokens[point + 1]
     is_after = before.kind is Kind.NUMBER and before.end == token.start
     if is_after and not (after.kind is Kind.NUMBER and after.start == token.end):
-        return Repair(said, elsewhere=((token.end, token.end, "0"),))
+        return Repair(hint_text, elsewhere=((token.end, token.end, "0"),))
     is_before = after.kind is Kind.NUMBER and after.start == token.end
-    return Repair(said, elsewhere=((token.start, token.start, "0"),) if is_before and not is_after else ())
+    return Repair(hint_text, elsewhere=((token.start, token.start, "0"),) if is_before and not is_after else ())
 
 
 def _without_exponent(tokens: Tokens, index: int) -> Repair:
     """Return the hint for a number in the notation of other languages, and the edit that rewrites it."""
-    said = "a number has digits and a point only, no exponent and no letters"
+    hint_text = "a number has digits and a point only, no exponent and no letters"
     token, sign, digits = tokens[index], tokens[index + 1], tokens[index + 2]
     is_signed = token.text[-1] in "eE" and token.end == sign.start and sign.end == digits.start
     text, end = (token.text + sign.text + digits.text, digits.end) if is_signed else (token.text, token.end)
     try:
         written_out = f"{Decimal(text):f}"
     except InvalidOperation:
-        return Repair(said)
-    return Repair(said, elsewhere=((token.start, end, written_out),) if len(written_out) < _LONGEST_NUMBER else ())
+        return Repair(hint_text)
+    return Repair(hint_text, elsewhere=((token.start, end, written_out),) if len(written_out) < _LONGEST_NUMBER else ())
 
 
-def _timed_hint(token: Token, before: Token, wanted: Sequence[str]) -> str | None:
-    if Kind.NUMBER in {token.kind, before.kind} and "do" not in wanted:
+def _timed_hint(token: Token, before: Token, expectations: Sequence[str]) -> str | None:
+    if Kind.NUMBER in {token.kind, before.kind} and "do" not in expectations:
         return "write a number, a space and a unit, `ms`, `s` or `min`: `after 3.0 s`"
     if token.text == "if":
         return "an `after` has no condition: add a state with a `transition if …`"
     return None
 
 
-def _statement_hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> Repair | str | None:
+def _statement_hint(tokens: Tokens, index: int, expectations: Sequence[str], block: Block) -> Repair | str | None:
     """Return the hint that depends on the kind of definition around the token."""
     token, before, starter = tokens[index], tokens[index - 1], tokens[block.first]
     if starter.is_keyword("after"):
-        return _timed_hint(token, before, wanted)
+        return _timed_hint(token, before, expectations)
     if starter.is_keyword("incoming", "outgoing", "service", "action"):
-        return _order_hint(tokens, index, wanted)
+        return _order_hint(tokens, index, expectations)
     if starter.is_keyword("provide") and token.text == ":":
         return "write the properties of an object in braces"
     if starter.is_keyword("requirement", "property"):
-        return _requirement_hint(token, before, wanted)
-    if starter.is_keyword("component") and "is" in wanted and token.text in {"=", ":"}:
+        return _requirement_hint(token, before, expectations)
+    if starter.is_keyword("component") and "is" in expectations and token.text in {"=", ":"}:
         return Repair(_TEMPLATE, "is" if tokens[index - 1].end < token.start else " is")
-    if starter.is_keyword("function") and token.text == "{" and {"=", "=(?!>)"} & set(wanted):
+    if starter.is_keyword("function") and token.text == "{" and {"=", "=(?!>)"} & set(expectations):
         return "write `=` and one expression instead of braces"
     return None
 
 
-def _order_hint(tokens: Tokens, index: int, wanted: Sequence[str]) -> Repair | str | None:
+def _order_hint(tokens: Tokens, index: int, expectations: Sequence[str]) -> Repair | str | None:
     """Return the hint for clauses of a communication in the wrong order."""
     token = tokens[index]
     if token.text == "," and tokens[index - 2].is_keyword("links"):
         return "write `links` after all other clauses"
-    if token.text == "send" and "type" in wanted:
+    if token.text == "send" and "type" in expectations:
         return "write `send: change` after the type"
-    if token.text == "identifier" and token.text not in wanted:
+    if token.text == "identifier" and token.text not in expectations:
         return "write `identifier` before all other clauses"
-    if "change" in wanted:
-        said = "write `send: change`, or leave `send` out to send in every tick"
-        return Repair(said, choices=("change",) if token.kind is Kind.WORD else ())
+    if "change" in expectations:
+        hint_text = "write `send: change`, or leave `send` out to send in every tick"
+        return Repair(hint_text, choices=("change",) if token.kind is Kind.WORD else ())
     return None
 
 
-def _requirement_hint(token: Token, before: Token, wanted: Sequence[str]) -> Repair | str | None:
-    if ":" in wanted and (before.kind is Kind.STRING or token.is_keyword("automaton")):
+def _requirement_hint(token: Token, before: Token, expectations: Sequence[str]) -> Repair | str | None:
+    if ":" in expectations and (before.kind is Kind.STRING or token.is_keyword("automaton")):
         return _before(token, "write `:` before it", ":")
     if before.kind is Kind.STRING:
         return 'write the text before the colon: `requirement name "text": …`'
-    if "needs" in wanted and token.text in {"when", "if", "requires", "while"}:
+    if "needs" in expectations and token.text in {"when", "if", "requires", "while"}:
         return Repair("write `needs`", "needs")
     if before.text == "every":
         return _ORDER
@@ -344,11 +346,15 @@ def _requirement_hint(token: Token, before: Token, wanted: Sequence[str]) -> Rep
     return None
 
 
-def _symbols(token: Token, wanted: Sequence[str]) -> list[str]:
+def _symbols(token: Token, expectations: Sequence[str]) -> list[str]:
     """Return the symbols that may have been meant instead of another symbol."""
-    if token.text == "->" and "=>" in wanted:
+    if token.text == "->" and "=>" in expectations:
         return ["=>"]
-    return [word for word in (":", ":=", "=", "->", "{", ",") if word in wanted or (word == "=" and "=(?!>)" in wanted)]
+    return [
+        word
+        for word in (":", ":=", "=", "->", "{", ",")
+        if word in expectations or (word == "=" and "=(?!>)" in expectations)
+    ]
 
 
 def _construct(word: Token) -> Repair | str:
@@ -361,14 +367,14 @@ def _construct(word: Token) -> Repair | str:
     return Repair(_MEANT[word.text], elsewhere=((word.start, word.end, text),))
 
 
-def _word_hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> Repair | str | None:
+def _word_hint(tokens: Tokens, index: int, expectations: Sequence[str], block: Block) -> Repair | str | None:
     token = tokens[index]
-    words = {word for word in wanted if word.isalpha() and word.islower()} - {"end"}
-    if "end" in wanted and block.level:
+    words = {word for word in expectations if word.isalpha() and word.islower()} - {"end"}
+    if "end" in expectations and block.level:
         words |= block.level.starters
     close = get_close_matches(token.text, sorted(words - {token.text}), n=1, cutoff=0.7)
-    if list(wanted) in ([","], [":"]):
-        return _before(token, f"write `{wanted[0]}` before it", wanted[0])
+    if list(expectations) in ([","], [":"]):
+        return _before(token, f"write `{expectations[0]}` before it", expectations[0])
     for word in (token, tokens[index - 1]):  # The parser reads a misused word as a name if a name is allowed there.
         if word.text in _MEANT and word.kind is Kind.WORD:
             return _construct(word)

@@ -15,13 +15,13 @@ from robosc.model import robosc as rsc
 from robosc.model.semantics.cone_of_influence import (
     LARGEST_TABLE,
     ConeOfInfluence,
-    Reason,
+    NeedReason,
     accesses,
     conditions,
     cone_of_influence,
 )
-from robosc.model.semantics.inputs import Computed, Data
-from robosc.model.semantics.operators import COMPARISONS, FUNCTIONS, Rule
+from robosc.model.semantics.inputs import ComputedValue, Data
+from robosc.model.semantics.operators import COMPARISONS, FUNCTIONS, TypeRule
 from robosc.model.semantics.typing import (
     BOOLEAN,
     DOUBLE,
@@ -39,9 +39,9 @@ from robosc.model.semantics.walks import fold, operands
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
-    from robosc.language.checks.mending import Hint
-    from robosc.model.semantics.cone_of_influence import Assigned, Reading
-    from robosc.model.semantics.inputs import Told
+    from robosc.language.checks.edits import Hint
+    from robosc.model.semantics.cone_of_influence import AssignmentPlace, InputRead
+    from robosc.model.semantics.inputs import InputSource
     from robosc.model.semantics.instances import Instance, Instances, InstanceVariable
 
 
@@ -50,7 +50,7 @@ class Fault:
     """Unsupported element in the cone of influence, and the first reason why the supervisor needs it."""
 
     element: ex.Located
-    reason: Reason
+    reason: NeedReason
     message: str
     hint: Hint
 
@@ -79,8 +79,8 @@ def supervised_faults(base: rsc.Base, search: Search) -> Iterator[Finding]:
         place = fault.element if unit is base else _reference(base, fault.reason, result)
         if (place, fault.element) not in reported:
             reported.add((place, fault.element))
-            said = fault.hint if isinstance(fault.hint, str) else fault.hint.hint
-            hint = fault.hint if unit is base else f"in library `{unit.name}`, {said}"
+            hint_text = fault.hint if isinstance(fault.hint, str) else fault.hint.hint
+            hint = fault.hint if unit is base else f"in library `{unit.name}`, {hint_text}"
             yield Finding(place, fault.message, hint)
 
 
@@ -97,11 +97,11 @@ def _unit(fault: Fault, base: rsc.Base) -> rsc.Base:
 
 def can_be_needed(variable: rsc.Variable) -> bool:
     """Return whether the supervisor can hold values of the variable's type, or the type is unknown."""
-    found = declared_type(variable.type)
-    return found in {BOOLEAN, INTEGER, UNKNOWN} or isinstance(found, EnumType)
+    kind = declared_type(variable.type)
+    return kind in {BOOLEAN, INTEGER, UNKNOWN} or isinstance(kind, EnumType)
 
 
-def readings(result: ConeOfInfluence) -> Iterator[Reading]:
+def readings(result: ConeOfInfluence) -> Iterator[InputRead]:
     """Return every reading of an event's data that the supervisor computes with.
 
     Readings of unsupported variables and assignments of a wrong type are left out: these have findings of their own.
@@ -114,12 +114,12 @@ def readings(result: ConeOfInfluence) -> Iterator[Reading]:
     return (reading for reading in result.readings if reading.whole not in unfit)
 
 
-def _fits(assigned: Assigned) -> bool:
+def _fits(assigned: AssignmentPlace) -> bool:
     assert assigned.variable is not None
-    wanted = declared_type(assigned.variable.type)
+    expected = declared_type(assigned.variable.type)
     value = assigned.assignment.value
-    found = UNKNOWN if value is None else type_of(value)
-    return UNKNOWN in {wanted, found} or found == wanted
+    actual = UNKNOWN if value is None else type_of(value)
+    return UNKNOWN in {expected, actual} or actual == expected
 
 
 def _faults(base: rsc.Base, search: Search) -> Iterator[Fault]:
@@ -130,7 +130,7 @@ def _cone(base: rsc.Base) -> ConeOfInfluence:
     return cone_of_influence(instances(base))
 
 
-def _reference(base: rsc.Base, reason: Reason, result: ConeOfInfluence) -> rsc.Access | rsc.ErrorReason:
+def _reference(base: rsc.Base, reason: NeedReason, result: ConeOfInfluence) -> rsc.Access | rsc.ErrorReason:
     while reason.within is not None and reason.within.unit is not base and reason.variable is not None:
         reason = result.variables[reason.variable]
     return reason.access
@@ -156,7 +156,7 @@ class _Where(NamedTuple):
 
     within: Instance | None
     variable: InstanceVariable | None
-    inputs: Mapping[ex.Expression, Told | None]
+    inputs: Mapping[ex.Expression, InputSource | None]
 
 
 def table_faults(instances: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
@@ -167,9 +167,9 @@ def table_faults(instances: Instances, result: ConeOfInfluence) -> Iterator[Faul
 
 def _computed(instances: Instances, result: ConeOfInfluence) -> Iterator[tuple[ex.Expression, _Where]]:
     """Yield the expressions that the supervisor computes, each with its context."""
-    inputs: dict[ex.Expression | None, dict[ex.Expression, Told | None]] = {}
+    inputs: dict[ex.Expression | None, dict[ex.Expression, InputSource | None]] = {}
     for reading in result.readings:
-        inputs.setdefault(reading.whole, {})[reading.part] = reading.told
+        inputs.setdefault(reading.whole, {})[reading.part] = reading.source
     for condition in conditions(instances):
         yield condition.expression, _Where(condition.within, None, inputs.get(condition.expression, {}))
     for assigned in result.computations:
@@ -186,15 +186,19 @@ def function_faults(instances: Instances, result: ConeOfInfluence) -> Iterator[F
         types, cases = Types(value_type(expression)), dict[ex.Expression | None, int]()
         fold(_cases, expression, memo=cases)
         for part in _supervised_parts(expression, where):
-            read = next(accesses(part), None) if isinstance(part, ex.FunctionCall) else None
-            if read is None or not isinstance(part, ex.FunctionCall) or FUNCTIONS[part.function].rule is Rule.INTEGER:
+            first_access = next(accesses(part), None) if isinstance(part, ex.FunctionCall) else None
+            if (
+                first_access is None
+                or not isinstance(part, ex.FunctionCall)
+                or FUNCTIONS[part.function].rule is TypeRule.INTEGER
+            ):
                 continue
-            reason = Reason(read, where.within, where.variable)
+            reason = NeedReason(first_access, where.within, where.variable)
             kinds = {types(access) for access in accesses(part)}
             if not kinds <= {BOOLEAN, INTEGER} and not any(isinstance(kind, EnumType) for kind in kinds):
                 continue
-            given = {types(part), *map(types, part.arguments)}
-            foreign = "doubles" if DOUBLE in given else "strings" if STRING in given else ""
+            types_used = {types(part), *map(types, part.arguments)}
+            foreign = "doubles" if DOUBLE in types_used else "strings" if STRING in types_used else ""
             if foreign:
                 message = f"`{part.function}` of {foreign} cannot be computed by the supervisor, expected integers"
                 yield Fault(part, reason, message, "compute it from `value` in a rule of an enum, and compare the enum")
@@ -216,7 +220,7 @@ def _supervised_parts(expression: ex.Expression, where: _Where) -> Iterator[ex.E
     pending = [expression]
     while pending:
         part = pending.pop()
-        if not isinstance(where.inputs.get(part), Computed):
+        if not isinstance(where.inputs.get(part), ComputedValue):
             yield part
             pending += reversed(operands(part))
 
@@ -236,7 +240,7 @@ def _in_expression(instances: Instances, expression: ex.Expression | None, where
     pending = [expression]
     while pending:
         part = pending.pop()
-        if part is not None and isinstance(where.inputs.get(part), Computed):
+        if part is not None and isinstance(where.inputs.get(part), ComputedValue):
             continue
         if isinstance(part, COMPARISONS) and {DOUBLE, STRING} & {types(part.left), types(part.right)}:
             yield from _too_many(instances, part, _COMPARISON, where)
@@ -259,7 +263,7 @@ def _too_many(instances: Instances, expression: ex.BinaryExpression, limit: _Lim
     if count > limit.most:
         yield Fault(
             expression,
-            Reason(reads[0], where.within, where.variable),
+            NeedReason(reads[0], where.within, where.variable),
             f"{limit.what} depends on {count} combinations of integer values, expected at most {limit.most}",
             limit.repair,
         )

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from robosc.base.diagnostics import Edit
 from robosc.model.places import place
-from robosc.model.semantics.naming import written
+from robosc.model.semantics.naming import escape_keyword
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -141,7 +141,7 @@ class Replacement(NamedTuple):
         part = _part(self.where)
         if part.text is None:
             return ()
-        return part.text.replaced(part.token(part.first).start, part.token(part.last).end, self.text)
+        return part.text.replace_tokens(part.token(part.first).start, part.token(part.last).end, self.text)
 
 
 class Removal(NamedTuple):
@@ -171,7 +171,7 @@ class Renaming(NamedTuple):
         names = file.occurrences(self.element) if file is not None else []
         if file is None or not any(name.is_declaration for name in names):
             return ()
-        return tuple(Edit(file.text.span(name.start, name.end), written(self.name)) for name in names)
+        return tuple(Edit(file.text.span(name.start, name.end), escape_keyword(self.name)) for name in names)
 
 
 class Together(NamedTuple):
@@ -213,7 +213,7 @@ def changed_file(way: Way) -> str:
     return place(way.where)[0]
 
 
-def wrapped(hint: str, before: str, behind: str, element: ex.Located, *, is_choice: bool = False) -> Together:
+def wrap(hint: str, before: str, behind: str, element: ex.Located, *, is_choice: bool = False) -> Together:
     """Return a hint to insert texts before and after an element."""
     parts = (Insertion("", before, element), Insertion("", behind, element, behind=True))
     return Together(hint, tuple(part for part in parts if part.text), is_choice)

@@ -7,12 +7,12 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from robosc.run.simulation.played import counterexample_steps, script_steps
+from robosc.run.simulation.sources import counterexample_steps, script_steps
 
 if TYPE_CHECKING:
     from robosc.base.diagnostics import Diagnostic
     from robosc.m2t.models import Models
-    from robosc.run.simulation import Simulation, Step
+    from robosc.run.simulation import ScriptStep, Simulation
 
 #: Default number of random events after which a run stops by itself.
 _MOST_AT_RANDOM = 10_000
@@ -35,7 +35,7 @@ class RequestError(Exception):
 
 
 @dataclass(frozen=True)
-class Wanted:
+class LaunchTarget:
     """The model to launch, its folders for libraries and ROS definitions, and the values of its parameters."""
 
     program: str
@@ -45,14 +45,14 @@ class Wanted:
 
 
 #: Loads a model with its supervisor, its findings such as warnings, and the texts of its files. Raises PlayError.
-Loader = Callable[[Wanted], tuple["Models", "Sequence[Diagnostic]", Mapping[str, str]]]
+Loader = Callable[[LaunchTarget], tuple["Models", "Sequence[Diagnostic]", Mapping[str, str]]]
 
 
 @dataclass(frozen=True)
 class Launch:
     """The arguments of a launch; `most` is the number of random events after which the run stops."""
 
-    wanted: Wanted
+    target: LaunchTarget
     script: str | None
     counterexample: str | bool | None
     seed: int
@@ -63,10 +63,10 @@ class Launch:
     def of(cls, arguments: Mapping[str, Any]) -> Launch:
         """Return the launch of a request's arguments. Raises RequestError."""
         for name, (kind, expected) in _KEYS.items():
-            given = arguments.get(name)
-            if given is not None and (not isinstance(given, kind) or (isinstance(given, bool) and kind is int)):
-                raise RequestError(f"launch: `{name}` is {json.dumps(given)}, expected {expected}")
-            paths = given if isinstance(given, list) else [given]
+            value = arguments.get(name)
+            if value is not None and (not isinstance(value, kind) or (isinstance(value, bool) and kind is int)):
+                raise RequestError(f"launch: `{name}` is {json.dumps(value)}, expected {expected}")
+            paths = value if isinstance(value, list) else [value]
             if any("\0" in path for path in paths if isinstance(path, str)):
                 raise RequestError(f"launch: `{name}` has a null character: no path has one")
         if not arguments.get("program"):
@@ -76,7 +76,7 @@ class Launch:
             raise RequestError("launch: `script` and `counterexample` exclude each other")
         libraries, interfaces = (tuple(map(str, arguments.get(name) or ())) for name in ("libraries", "interfaces"))
         return cls(
-            Wanted(arguments["program"], libraries, interfaces, arguments.get("parameters") or {}),
+            LaunchTarget(arguments["program"], libraries, interfaces, arguments.get("parameters") or {}),
             script,
             counterexample,
             arguments.get("seed") or 0,
@@ -84,7 +84,7 @@ class Launch:
             arguments.get("stopOnEntry") is not False,
         )
 
-    def steps(self, simulation: Simulation) -> tuple[list[Step] | None, str]:
+    def steps(self, simulation: Simulation) -> tuple[list[ScriptStep] | None, str]:
         """Return the steps to play (None to play random events), and a message about them.
 
         Raises PlayError, and OSError if the script cannot be read.
@@ -92,6 +92,6 @@ class Launch:
         if self.script is not None:
             return script_steps(simulation, self.script), ""
         if self.counterexample is not None:
-            wanted = self.counterexample if isinstance(self.counterexample, str) else None
-            return counterexample_steps(simulation, wanted)
+            name = self.counterexample if isinstance(self.counterexample, str) else None
+            return counterexample_steps(simulation, name)
         return None, ""

@@ -47,7 +47,7 @@ class Item:
 def outline(file: File) -> list[Item]:
     """Return the definitions of the readable parts of a text, nested as in the text."""
     roots: list[Item] = []
-    found: dict[Any, Item] = {}
+    items_by_element: dict[Any, Item] = {}
     for element in own_elements(file):
         name = file.declared_names.get(element)
         if isinstance(element, _HIDDEN) or (name is None and not isinstance(element, _ITEMS)):
@@ -61,10 +61,10 @@ def outline(file: File) -> list[Item]:
             label = " ".join(file.text.content[start:first_end].removesuffix("{").split()) or "…"
             item = Item(element, label, start, end, start, first_end)
         around = element.eContainer()
-        while around is not None and around not in found:
+        while around is not None and around not in items_by_element:
             around = around.eContainer()
-        found[element] = item
-        (roots if around is None else found[around].items).append(item)
+        items_by_element[element] = item
+        (roots if around is None else items_by_element[around].items).append(item)
     return roots
 
 
@@ -75,17 +75,17 @@ def folds(file: File) -> list[tuple[int, int]]:
 
 def around(file: File, offset: int) -> list[tuple[int, int]]:
     """Return the ranges of all elements that contain an offset or end at it, from the innermost to the whole text."""
-    found = {(0, len(file.text.content))}
+    spans = {(0, len(file.text.content))}
     name = file.name_at(offset)
     if name is not None:
-        found.add((name.start, name.end))
+        spans.add((name.start, name.end))
     for element in own_elements(file):
         start, end = span(file, element)
         if start <= offset <= end:
-            found.add((start, end))
+            spans.add((start, end))
     # A selection can only grow: ranges that do not contain the previous one are dropped.
     ranges: list[tuple[int, int]] = []
-    for start, end in sorted(found, key=lambda place: (place[1] - place[0], place)):
+    for start, end in sorted(spans, key=lambda place: (place[1] - place[0], place)):
         if not ranges or (start <= ranges[-1][0] and ranges[-1][1] <= end):
             ranges.append((start, end))
     return ranges

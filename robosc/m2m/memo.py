@@ -9,32 +9,32 @@ from typing import TYPE_CHECKING, Any, TypeVar
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-_Made = TypeVar("_Made")
+_Result = TypeVar("_Result")
 
-#: Results by key while `remembered` is active, else None.
-_made: ContextVar[dict[object, Any] | None] = ContextVar("made", default=None)
+#: Results by key while `cache_transformations` is active, else None.
+_cache: ContextVar[dict[object, Any] | None] = ContextVar("made", default=None)
 
 
 @contextmanager
-def remembered() -> Iterator[None]:
+def cache_transformations() -> Iterator[None]:
     """Cache the results of `once`, so that each model is transformed once.
 
     Models must not change in this context. A nested context shares the cache of the outer one.
     """
-    known = _made.get()
-    before = _made.set({} if known is None else known)
+    known = _cache.get()
+    before = _cache.set({} if known is None else known)
     try:
         yield
     finally:
-        _made.reset(before)
+        _cache.reset(before)
 
 
-def once(key: object, make: Callable[[], _Made]) -> _Made:
-    """Return the result of `make()`. Within `remembered`, return the cached result of an equal `key`."""
-    known = _made.get()
+def once(key: object, make: Callable[[], _Result]) -> _Result:
+    """Return the result of `make()`. Within `cache_transformations`, return the cached result of an equal `key`."""
+    known = _cache.get()
     if known is None:
         return make()
     if key not in known:
         known[key] = make()
-    found: _Made = known[key]
-    return found
+    result: _Result = known[key]
+    return result

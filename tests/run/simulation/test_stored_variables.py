@@ -13,11 +13,11 @@ from hypothesis import strategies as st
 import robosc
 from robosc.model.semantics.messages import receptions
 from robosc.model.semantics.roles import event_name
-from robosc.run.runtime.core.event_log import shown
+from robosc.run.runtime.core.event_log import format_value
 from robosc.run.runtime.core.node_data import NodeData
 from robosc.run.simulation import Simulation
 from robosc.run.simulation.data import data_beside
-from robosc.run.simulation.kept import Kept
+from robosc.run.simulation.stored_variables import StoredVariables
 from tests.searching import examples
 
 TANK = """\
@@ -99,17 +99,17 @@ def message(value: Any) -> Any:
 @given(STEPS)
 def test_it_is_what_the_node_makes_of_the_messages(steps: list[tuple[str, Any]]) -> None:
     simulation = Simulation(MODEL, GRAPH)
-    kept, node = Kept(simulation.engine, GRAPH), NodeData(GRAPH, simulation.engine)
+    kept, node = StoredVariables(simulation.engine, GRAPH), NodeData(GRAPH, simulation.engine)
     values = kept.initial
     for event, value in steps:
         reception = RECEPTIONS[event]
-        received = node.received(reception.event, reception.inputs, message(value))
+        received = node.receive(reception.event, reception.inputs, message(value))
         before, data = simulation.engine.state, {} if value is None else {"value": value}
         assert simulation.perform(event, json.loads(json.dumps(data))).accepted
         node.variables |= received.variables
         after = kept.after(values, event, data, before)
         expected = {
-            f"Tank.{variable.name}": shown(now)
+            f"Tank.{variable.name}": format_value(now)
             for variable, now in node.variables.items()
             if variable.component == "Tank"
         }
@@ -124,7 +124,7 @@ def test_it_is_what_the_node_makes_of_the_messages(steps: list[tuple[str, Any]])
 
 def test_nobody_knows_what_was_not_given() -> None:
     simulation = Simulation(MODEL, GRAPH)
-    kept = Kept(simulation.engine, GRAPH)
+    kept = StoredVariables(simulation.engine, GRAPH)
     before = simulation.engine.state
     # The data determines only which transition was taken, not the value.
     values = kept.after(kept.initial, READING, {"where": {"value.level > highest": True}}, before)
@@ -135,8 +135,8 @@ def test_nobody_knows_what_was_not_given() -> None:
 
 @pytest.mark.parametrize("value", [[1], {"a": 1}, float("nan"), float("inf")])
 def test_what_a_report_tells_that_no_page_can_show(value: Any) -> None:
-    kept = Kept(Simulation(MODEL, GRAPH).engine, GRAPH)
-    told = kept.told(kept.initial, {"Tank.level": value, "Tank.other": 1, "Tank.name": "seen"})
+    kept = StoredVariables(Simulation(MODEL, GRAPH).engine, GRAPH)
+    told = kept.update(kept.initial, {"Tank.level": value, "Tank.other": 1, "Tank.name": "seen"})
     assert "Tank.other" not in told
     assert told["Tank.name"] == "seen"
     json.dumps(told, allow_nan=False)

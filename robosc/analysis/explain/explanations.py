@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeVar
 
-from robosc.analysis.blocking import blocking_counterexample, forbidden_from, forbidding, reason_of_emptiness
+from robosc.analysis.blocking import blocking_counterexample, forbidden_from, reason_of_emptiness, requirements_at_fault
 from robosc.analysis.explain.answers import (
     Emptiness,
     Explanation,
@@ -21,16 +21,16 @@ from robosc.analysis.explain.answers import (
 from robosc.analysis.explain.obstacles import Obstacles
 from robosc.analysis.paths import Path, shortest_path
 from robosc.analysis.system import ExplainedSystem, SynthesizedSystem, whole_state
-from robosc.analysis.wording import listed, name, words
+from robosc.analysis.wording import join_with_and, name, words
 from robosc.engine import Blocked
 from robosc.model.semantics.edges import edges_from
 from robosc.model.semantics.printing import RobotPrinter
-from robosc.synthesis import MEMORY, encoded
+from robosc.synthesis import MEMORY, use_encoding
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
-    from robosc.analysis.blocking import BlockingCounterexample, Reason
+    from robosc.analysis.blocking import BlockingCounterexample, BlockReason
     from robosc.analysis.paths import TraceStep
     from robosc.analysis.system import Codes
     from robosc.model import sct
@@ -43,34 +43,34 @@ if TYPE_CHECKING:
 _TRIED = 24
 
 
-def explored(model: sct.SupervisoryControlModel, look: Callable[[SynthesizedSystem], T], memory: int = MEMORY) -> T:
+def explore(model: sct.SupervisoryControlModel, look: Callable[[SynthesizedSystem], T], memory: int = MEMORY) -> T:
     """Return the result of `look` for the system under the model's supervisor, or under a synthesized one.
 
     `look` may run several times, with more memory each time. Raises MemoryError if the decision diagrams take more than
     `memory` bytes.
     """
     system = SynthesizedSystem if model.supervisor is None else ExplainedSystem
-    return encoded(model, lambda encoding: look(system(model, encoding)), memory)
+    return use_encoding(model, lambda encoding: look(system(model, encoding)), memory)
 
 
 # An event in a state
 
 
-def explain(system: SynthesizedSystem, event: sct.Event, given: Codes) -> Explanation:
+def explain(system: SynthesizedSystem, event: sct.Event, partial: Codes) -> Explanation:
     """Explain whether an event can happen in the nearest state with these codes; the supervisor is not empty.
 
     If the supervisor lets the robot reach no such state, the answer is about the nearest state that the plants reach.
     If they reach none either, it is about the initial state with these codes.
     """
     encoding = system.encoding
-    goal = encoding.diagrams.all_of(encoding.has_code(element, code) for element, code in given.items())
+    goal = encoding.diagrams.all_of(encoding.has_code(element, code) for element, code in partial.items())
     way = system.layers.path_to(goal & system.controlled)
     if way is not None:
         return explain_after(system, event, way)
     way = shortest_path(encoding, system.plant_moves, encoding.initial, goal & system.uncontrolled, system.uncontrolled)
     if way is not None:
         return explain_beyond(system, event, way)
-    return _explained(system, event, _situation(system, {**encoding.initial_codes, **given}, Reach.NEVER))
+    return _explained(system, event, _situation(system, {**encoding.initial_codes, **partial}, Reach.NEVER))
 
 
 def explain_after(system: SynthesizedSystem, event: sct.Event, way: Path) -> Explanation:
@@ -107,7 +107,7 @@ def _explained(
     blame: list[Note] = []
     if supervised and not plants and not requirements and not happens and not _harmless(system, event, codes):
         caught = blocking_counterexample(system, event, Path([dict(codes)], []))
-        blame = blamed(system, caught.codes)
+        blame = find_culprits(system, caught.codes)
     return Explanation(
         event,
         situation,
@@ -125,7 +125,7 @@ def _explained(
 def _harmless(system: SynthesizedSystem, event: sct.Event, codes: Codes) -> bool:
     """Return whether synthesis accepts the target of an event: then only another tool's supervisor forbids it."""
     step = system.relations[event].step
-    rounds = system.found.rounds
+    rounds = system.solution.rounds
     given_up = rounds[0] & ~rounds[-1]
     return step is None or not (step.image(system.encoding.state(codes)) & given_up).satisfiable()
 
@@ -145,7 +145,7 @@ def _way(system: SynthesizedSystem, start: Codes, allowed: Diagram) -> tuple[Tra
     return None if way is None else system.trace(way)
 
 
-def blamed(system: SynthesizedSystem, end: Codes) -> list[Note]:
+def find_culprits(system: SynthesizedSystem, end: Codes) -> list[Note]:
     """Return the invariants that a state violates, else the requirements that forbid something after it."""
     violated = [
         Note(requirement, requirement.text or "a requirement", ("forbids this state",))
@@ -189,13 +189,13 @@ def possibility(system: SynthesizedSystem, event: sct.Event) -> Possibility:
 
 def _conflict(system: SynthesizedSystem, relation: EventRelation) -> tuple[Note, ...]:
     """Return the requirements that disable an event in every state in which the plants enable it."""
-    at_fault = forbidding(relation, system.uncontrolled & relation.enabled)
+    at_fault = requirements_at_fault(relation, system.uncontrolled & relation.enabled)
     return tuple(Note(requirement, requirement.text or "a requirement") for requirement in at_fault)
 
 
-def _beyond(system: SynthesizedSystem, event: sct.Event, wanted: Diagram) -> Explanation | None:
-    """Return the nearest state that enables the event and satisfies `wanted`, unreachable under the supervisor."""
-    goal = system.uncontrolled & system.relations[event].enabled & wanted
+def _beyond(system: SynthesizedSystem, event: sct.Event, condition: Diagram) -> Explanation | None:
+    """Return the nearest state that enables the event and satisfies `condition`, unreachable under the supervisor."""
+    goal = system.uncontrolled & system.relations[event].enabled & condition
     way = shortest_path(system.encoding, system.plant_moves, system.encoding.initial, goal, system.uncontrolled)
     return None if way is None else explain_beyond(system, event, way)
 
@@ -241,16 +241,16 @@ def emptiness(system: SynthesizedSystem) -> Emptiness | None:
     if system.controlled.satisfiable():
         return None
     reason = reason_of_emptiness(system)
-    found = blamed(system, reason.codes)
-    helpful = loosenings(system, lambda other: other.controlled.satisfiable(), [note.element for note in found])
-    return Emptiness(reason, tuple(_stuck(reason)), tuple(found), helpful)
+    culprits = find_culprits(system, reason.codes)
+    helpful = loosenings(system, lambda other: other.controlled.satisfiable(), [note.element for note in culprits])
+    return Emptiness(reason, tuple(_stuck(reason)), tuple(culprits), helpful)
 
 
-def _stuck(reason: Reason) -> list[Note]:
+def _stuck(reason: BlockReason) -> list[Note]:
     notes, printed = [], RobotPrinter()
     for plant in reason.unmarked:
         here = plant.locations[reason.codes[plant]]
-        marked = listed([f"`{location.name}`" for location in plant.locations if location.marked])
+        marked = join_with_and([f"`{location.name}`" for location in plant.locations if location.marked])
         goal = f"cannot get back to {marked}" if marked else "has no marked state"
         details = [
             f"its transition on {words(edge.event)} requires `{printed(edge.guard)}`"
@@ -272,12 +272,12 @@ def loosenings(
     The requirements of `first` are tried before the others. The result is None if even leaving out all of them does not
     help.
     """
-    texts = system.stated(first)
+    texts = system.group_requirements(first)
     if not helps(system.without(frozenset(requirement for text in texts for requirement in text))):
         return None
-    found = []
+    helpful = []
     for text in texts[:_TRIED]:
         other = system.without(frozenset(text))
         if helps(other):
-            found.append(Loosening(text, system.encoding.count(other.controlled)))
-    return tuple(sorted(found, key=lambda loosening: -loosening.states))
+            helpful.append(Loosening(text, system.encoding.count(other.controlled)))
+    return tuple(sorted(helpful, key=lambda loosening: -loosening.states))

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from robosc.model import rosgraph
 from robosc.model.semantics.messages import holds_objects, parts_with_headers
-from robosc.run.runtime.core.event_log import nested
-from robosc.run.runtime.core.node_data import bounded, fill, hand_on
+from robosc.run.runtime.core.event_log import nest
+from robosc.run.runtime.core.node_data import fill, hand_on, within_range
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -47,13 +47,13 @@ class Composer:
         fields: dict[tuple[str, ...], Json] = {}
         alternatives = sending.alternatives
         chosen = next((data for data in alternatives if self.data.is_in(data.location)), None)
-        given = list(chosen.fields) if chosen is not None else []
-        values = [bounded(self.data.value(field.value), field.type) for field in given]
-        for field, value in zip(given, values, strict=True):
+        assignments = list(chosen.fields) if chosen is not None else []
+        values = [within_range(self.data.value(field.value), field.type) for field in assignments]
+        for field, value in zip(assignments, values, strict=True):
             if isinstance(field.value, rosgraph.WireAccess) and holds_objects(field.type):
                 hand_on(self.port, message, field.path, value)
                 continue
             fields[tuple(field.path)] = fill(self.port, message, field.path, value)
         if not alternatives:
             return message, None
-        return message, {"value": fields["data",] if list(fields) == [("data",)] else nested(fields)}
+        return message, {"value": fields["data",] if list(fields) == [("data",)] else nest(fields)}

@@ -17,7 +17,7 @@ from robosc.model import sct
 from robosc.model.semantics.edges import edges_by_event, origin
 from robosc.model.semantics.roles import event_name
 from robosc.run.simulation import Simulation
-from robosc.run.simulation.tracking import ReportError, Tracker
+from robosc.run.simulation.tracker import ReportError, Tracker
 from tests.searching import examples
 
 ROOT = Path(__file__).parents[3]

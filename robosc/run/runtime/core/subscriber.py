@@ -13,10 +13,10 @@ WAITING = 1000
 class Listener(Protocol):
     """Callbacks for the reports of nodes, called from a thread of the middleware."""
 
-    def defined(self, text: str) -> None:
+    def receive_definition(self, text: str) -> None:
         """Receive the JSON text of a definition on `~/definition`."""
 
-    def told(self, text: str) -> None:
+    def receive_report(self, text: str) -> None:
         """Receive the JSON text of one report on `~/state`."""
 
     def heard(self, publishers: int) -> None:

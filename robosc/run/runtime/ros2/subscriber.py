@@ -10,13 +10,13 @@ import rclpy
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import String
 
-from robosc.run.runtime.core.listening import LOOK, WAITING
+from robosc.run.runtime.core.subscriber import LOOK, WAITING
 from robosc.run.runtime.ros2.node import executor, start
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from robosc.run.runtime.core.listening import Listener
+    from robosc.run.runtime.core.subscriber import Listener
 
 
 class Ros2Subscriber:
@@ -47,9 +47,13 @@ class Ros2Subscriber:
             self._executor.spin_once(timeout_sec=LOOK)
 
     def _listen(self, node: str, listener: Listener) -> None:
-        kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        self._node.create_subscription(String, f"{node}/definition", lambda text: listener.defined(text.data), kept)
-        self._node.create_subscription(String, f"{node}/state", lambda text: listener.told(text.data), WAITING)
+        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self._node.create_subscription(
+            String, f"{node}/definition", lambda text: listener.receive_definition(text.data), latched
+        )
+        self._node.create_subscription(
+            String, f"{node}/state", lambda text: listener.receive_report(text.data), WAITING
+        )
 
     def _look(self) -> None:
         for nodes, listener in self._heard:

@@ -8,8 +8,8 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from robosc.analysis.explain import NamingError, event_named
-from robosc.analysis.wording import called, listed, name, words
+from robosc.analysis.explain import NamingError, find_event
+from robosc.analysis.wording import join_with_and, name, quote_requirements, words
 from robosc.engine import Blocked, Engine
 from robosc.model import rosgraph, sct
 from robosc.model.semantics.evaluation import evaluate
@@ -21,11 +21,11 @@ from robosc.run.node_tests.messages import Record, leaf_values
 from robosc.run.node_tests.trace_player import Incoming as Reader
 from robosc.run.node_tests.trace_player import Line as TraceLine
 from robosc.run.node_tests.trace_player import TraceError, merged, same, with_nan
-from robosc.run.node_tests.trace_test import described
-from robosc.run.runtime.core.event_log import nested
+from robosc.run.node_tests.trace_test import describe_incoming
+from robosc.run.runtime.core.event_log import nest
 from robosc.run.runtime.core.json_text import json_text
-from robosc.run.runtime.core.port import CancelAnswer, Failure, Outcome
-from robosc.run.scenario_tests.reading import Allowed, Holds, Incoming, Refusal, Sent, Wait
+from robosc.run.runtime.core.port import CancelAnswer, Failure, GoalOutcome
+from robosc.run.scenario_tests.reading import Holds, IncomingEvent, Permission, Refusal, SentCommand, Wait
 from robosc.run.simulation.data import DataError, EventData
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from robosc.language.configuration import Configuration
     from robosc.model import expression as ex
     from robosc.run.node_tests.robot import RunningGoal
-    from robosc.run.node_tests.samples import Read
+    from robosc.run.node_tests.samples import LoggedValue
     from robosc.run.runtime.core.json_text import Json
     from robosc.run.runtime.core.port import Client
     from robosc.run.scenario_tests.operations import Operations
@@ -86,16 +86,16 @@ def unknown_events(model: sct.SupervisoryControlModel, scenarios: Iterable[Scena
     Also for each line with an event that the robot does not send.
     """
     for line in (line for scenario in scenarios for line in scenario.steps):
-        if not isinstance(line, (Incoming, Refusal, Allowed, Sent)):
+        if not isinstance(line, (IncomingEvent, Refusal, Permission, SentCommand)):
             continue
         try:
-            event = event_named(model, line.event)
+            event = find_event(model, line.event)
         except NamingError as error:
             yield line.fault(error.message, error.hint or None)
             continue
-        if isinstance(line, Incoming):
+        if isinstance(line, IncomingEvent):
             yield from _impossible(line, event)
-        elif isinstance(line, Sent) and not event.controllable:
+        elif isinstance(line, SentCommand) and not event.controllable:
             yield line.fault(f"the {words(event)} comes from the robot, not from the controller")
 
 
@@ -103,15 +103,15 @@ def unfit_data(graph: rosgraph.RosGraph, types: RosTypes, scenarios: Iterable[Sc
     """Yield a finding for each line whose data does not fit its event. Precondition: each event and reason is known."""
     checked = EventData(Engine(graph.model), graph, types)
     for line in (line for scenario in scenarios for line in scenario.steps):
-        if isinstance(line, Incoming) and line.data is not None:
+        if isinstance(line, IncomingEvent) and line.data is not None:
             data = {"value": line.data} if line.reason is None else {"value": line.data, "reason": line.reason}
             try:
-                checked.check(event_name(event_named(graph.model, line.event)), data, is_message=line.is_message)
+                checked.check(event_name(find_event(graph.model, line.event)), data, is_message=line.is_message)
             except DataError as error:
                 yield line.fault(str(error), error.hint)
 
 
-def _impossible(line: Incoming, event: sct.Event) -> Iterator[Diagnostic]:
+def _impossible(line: IncomingEvent, event: sct.Event) -> Iterator[Diagnostic]:
     """Yield findings if the robot does not send an event, or not with the line's reason or data."""
     possible = possible_reasons(event)
     if event.kind not in _FROM_THE_ROBOT:
@@ -120,7 +120,7 @@ def _impossible(line: Incoming, event: sct.Event) -> Iterator[Diagnostic]:
     elif line.reason is not None and not possible:
         yield line.fault("only the error of a service or an action has a reason", f"leave out `because {line.reason}`")
     elif line.reason is not None and line.reason not in possible:
-        hint = f"expected {listed([f'`{reason}`' for reason in sorted(possible)])}"
+        hint = f"expected {join_with_and([f'`{reason}`' for reason in sorted(possible)])}"
         yield line.fault(f"the {words(event)} cannot have the reason `{line.reason}`", hint)
     elif possible and line.data is not None and not brings_data(event, line.reason):
         yield line.fault(f"an error with the reason `{line.reason}` has no data", "leave out `with …`")
@@ -157,13 +157,13 @@ class Player(Drive):
         for action in graph.actionClients:
             self._clients |= dict.fromkeys([action.error.event, action.canceled.event], action)
             self._acts[action.feedback.event] = partial(self._feed_back, action)
-            self._acts[action.response.event] = partial(self._end, action, Outcome.SUCCEEDED)
-            self._acts[action.canceled.event] = partial(self._end, action, Outcome.CANCELED)
+            self._acts[action.response.event] = partial(self._end, action, GoalOutcome.SUCCEEDED)
+            self._acts[action.canceled.event] = partial(self._end, action, GoalOutcome.CANCELED)
 
     @property
     def trace(self) -> list[str]:
         """The lines of the event log."""
-        return self._lines.kept
+        return self._lines.lines
 
     @property
     def sources(self) -> list[Line]:
@@ -178,7 +178,7 @@ class Player(Drive):
         """
         self._controller = self._begin(_Controller)
         self._controller.note(operations)
-        self._controller.keep_messages(lambda: len(self._lines.kept))
+        self._controller.keep_messages(lambda: len(self._lines.lines))
         self._controller.start()
         findings: list[Diagnostic] = []
         self._since = 0
@@ -191,7 +191,7 @@ class Player(Drive):
                 fault = self._played(line)
                 self._attribute(line)
                 if fault is not None:
-                    if isinstance(line, (Incoming, Refusal, Wait)):
+                    if isinstance(line, (IncomingEvent, Refusal, Wait)):
                         findings.append(fault)
                         break
                     findings.append(self._with_canceling(fault))
@@ -200,21 +200,21 @@ class Player(Drive):
         return findings
 
     def _attribute(self, line: Line) -> None:
-        self._sources += [line] * (len(self._lines.kept) - len(self._sources))
+        self._sources += [line] * (len(self._lines.lines) - len(self._sources))
 
     def _played(self, line: Line) -> Diagnostic | None:
         try:
             match line:
-                case Wait() | Incoming() | Refusal():
-                    self._since = len(self._lines.kept)
+                case Wait() | IncomingEvent() | Refusal():
+                    self._since = len(self._lines.lines)
                     self._step(line)
                 case Holds(text=text):
                     if not evaluate(self._conditions[line], self._controller.engine.read):
                         return line.fault(f"`{text}` does not hold", self._state())
-                case Allowed():
-                    return self._verdict(line, event_named(self._graph.model, line.event))
-                case Sent():
-                    return self._sent(line, event_named(self._graph.model, line.event))
+                case Permission():
+                    return self._verdict(line, find_event(self._graph.model, line.event))
+                case SentCommand():
+                    return self._sent(line, find_event(self._graph.model, line.event))
         except NamingError as error:
             return line.fault(error.message, error.hint or None)
         except TraceError as error:
@@ -223,11 +223,11 @@ class Player(Drive):
 
     # Steps
 
-    def _step(self, line: Wait | Incoming | Refusal) -> None:
-        if isinstance(line, Incoming):
+    def _step(self, line: Wait | IncomingEvent | Refusal) -> None:
+        if isinstance(line, IncomingEvent):
             self._come_in(line)
         elif isinstance(line, Refusal):
-            self._refuse(event_named(self._graph.model, line.event))
+            self._refuse(find_event(self._graph.model, line.event))
         else:
             periods = math.ceil(round(line.seconds / self._period, 6))
             if periods > _MOST_PERIODS:
@@ -236,8 +236,8 @@ class Player(Drive):
             for _ in range(periods):
                 self._pass_period()
 
-    def _come_in(self, line: Incoming) -> None:
-        event = event_named(self._graph.model, line.event)
+    def _come_in(self, line: IncomingEvent) -> None:
+        event = find_event(self._graph.model, line.event)
         if not self._controller.engine.enabled(event_name(event)):
             if event.kind == sct.EventKind.canceled and self._clients[event] in self._robot.goals:
                 hint = f"write `error from {self._called(event)} because canceled`"
@@ -250,7 +250,7 @@ class Player(Drive):
         else:
             self._bring(event, line, self._acts[event])
 
-    def _bring(self, source: sct.Event, line: Incoming, act: Callable[[Any], None]) -> None:
+    def _bring(self, source: sct.Event, line: IncomingEvent, act: Callable[[Any], None]) -> None:
         """Handle incoming data that has the shape of the event `source`."""
         data, fields = self._message(source, line)
 
@@ -260,7 +260,7 @@ class Player(Drive):
 
         self._let_in(come_in)
 
-    def _message(self, source: sct.Event, line: Incoming, *others: sct.Event) -> tuple[Any, dict[str, Any]]:
+    def _message(self, source: sct.Event, line: IncomingEvent, *others: sct.Event) -> tuple[Any, dict[str, Any]]:
         """Return a message with the data of a line, and its fields that are set or differ from zero.
 
         `others` are further events that read it.
@@ -268,17 +268,17 @@ class Player(Drive):
         fields: dict[str, Any] = {}
         for event in (*others, source):
             kind = self.incoming[event]
-            reads = [read.path for _, shown in kind.events for read in shown]
+            reads = [logged.path for _, shown in kind.events for logged in shown]
             data = None
-            is_message = line.is_message or _is_raw([read for _, shown in kind.events for read in shown], line.data)
+            is_message = line.is_message or _is_raw([logged for _, shown in kind.events for logged in shown], line.data)
             if line.data is not None and not is_message and reads:
                 data = {"value": _by_index(line.data, reads)}
-            given = with_nan(dict(line.data)) if is_message else None
-            played = TraceLine(line.span.line, 0.0, "in", event_name(event), data, given)
-            fields = merged(fields, Reader(described(kind)).message([played]))
+            whole = with_nan(dict(line.data)) if is_message else None
+            played = TraceLine(line.span.line, 0.0, "in", event_name(event), data, whole)
+            fields = merged(fields, Reader(describe_incoming(kind)).message([played]))
         values = leaf_values(fields)
         defaults = kind.defaults(values)
-        return kind.message(values), nested({**values, **defaults}) if defaults else fields
+        return kind.message(values), nest({**values, **defaults}) if defaults else fields
 
     def _publish(self, topic: rosgraph.Subscription, data: Any) -> None:
         self._controller.receive(topic, data)
@@ -295,12 +295,12 @@ class Player(Drive):
         goal = self._robot.goals[action]
         goal.accepted = self._now if goal.accepted is None else goal.accepted
 
-    def _end(self, action: rosgraph.ActionClient, outcome: Outcome, data: Any) -> None:
+    def _end(self, action: rosgraph.ActionClient, outcome: GoalOutcome, data: Any) -> None:
         self._robot.goals.pop(action).handlers.ended(outcome, data, "")
 
     # Failures
 
-    def _fail(self, event: sct.Event, line: Incoming) -> None:
+    def _fail(self, event: sct.Event, line: IncomingEvent) -> None:
         client = self._clients[event]
         reason = Failure(line.reason or possible_reasons(event)[0])
         is_answer = line.reason is None and line.data is not None and isinstance(client, rosgraph.ServiceClient)
@@ -311,7 +311,7 @@ class Player(Drive):
         else:
             self._fail_goal(client, reason, line)
 
-    def _answer_unreadably(self, client: Client, line: Incoming) -> None:
+    def _answer_unreadably(self, client: Client, line: IncomingEvent) -> None:
         """Answer with data that the node can't read: that of a line, or a message without elements of arrays."""
         event, others = client.response.event, [client.error.event] if isinstance(client, rosgraph.ActionClient) else []
         blank = self.incoming[event].message({})
@@ -348,7 +348,7 @@ class Player(Drive):
         while not self._has_happened(end) and self._now + self._period < over:
             self._pass_period()
 
-    def _fail_goal(self, client: rosgraph.ActionClient, reason: Failure, line: Incoming) -> None:
+    def _fail_goal(self, client: rosgraph.ActionClient, reason: Failure, line: IncomingEvent) -> None:
         if reason is Failure.CANCELED and self._controller.engine.enabled(event_name(client.canceled.event)):
             hint = f"write `canceled from {self._called(client.canceled.event)}`"
             raise NamingError("the controller cancels this goal itself", hint)
@@ -364,7 +364,7 @@ class Player(Drive):
             self._forget(client)
             match reason:
                 case Failure.ABORTED | Failure.CANCELED | Failure.LOST:
-                    goal.handlers.ended(Outcome(reason), result, "")
+                    goal.handlers.ended(GoalOutcome(reason), result, "")
                 case Failure.REJECTED:
                     goal.handlers.rejected()
                 case _:
@@ -406,7 +406,7 @@ class Player(Drive):
             del self._robot.goals[client]
 
     def _has_happened(self, event: sct.Event) -> bool:
-        return any(json.loads(line)["event"] == event_name(event) for line in self._lines.kept[self._since :])
+        return any(json.loads(line)["event"] == event_name(event) for line in self._lines.lines[self._since :])
 
     def _refuse(self, event: sct.Event) -> None:
         """Refuse to cancel the goal that would end with an event."""
@@ -440,43 +440,43 @@ class Player(Drive):
 
     # Expectations
 
-    def _verdict(self, line: Allowed, event: sct.Event) -> Diagnostic | None:
+    def _verdict(self, line: Permission, event: sct.Event) -> Diagnostic | None:
         engine = self._controller.engine
-        by, told = engine.blocked_by(event_name(event)), words(event)
-        failing = engine.failing(event_name(event))
+        by, phrase = engine.blocked_by(event_name(event)), words(event)
+        failing = engine.failing_requirements(event_name(event))
         if not line.forbidden:
             if by is None:
                 return None
-            why = f"{called(failing)} forbids it" if failing else _WHY[by]
-            return line.fault(f"the {told} is not allowed: {why}", self._state())
+            why = f"{quote_requirements(failing)} forbids it" if failing else _WHY[by]
+            return line.fault(f"the {phrase} is not allowed: {why}", self._state())
         if by in (None, Blocked.PLANT):
             why = "it is allowed" if by is None else _WHY[Blocked.PLANT]
-            return line.fault(f"the {told} is not forbidden: {why}", self._state())
+            return line.fault(f"the {phrase} is not forbidden: {why}", self._state())
         if line.by is None or any(
             line.by in (requirement.name, requirement.text) or line.by in (requirement.text or "")
             for requirement in failing
         ):
             return None
-        others = called(failing) if failing else "synthesis"
-        return line.fault(f"the {told} is not forbidden by `{line.by}`, but by {others}", self._state())
+        others = quote_requirements(failing) if failing else "synthesis"
+        return line.fault(f"the {phrase} is not forbidden by `{line.by}`, but by {others}", self._state())
 
-    def _sent(self, line: Sent, event: sct.Event) -> Diagnostic | None:
-        lines = enumerate(map(json.loads, self._lines.kept[self._since :]), self._since)
-        found = [(number, entry) for number, entry in lines if entry["event"] == event_name(event)]
-        told = words(event)
+    def _sent(self, line: SentCommand, event: sct.Event) -> Diagnostic | None:
+        lines = enumerate(map(json.loads, self._lines.lines[self._since :]), self._since)
+        sent_lines = [(number, entry) for number, entry in lines if entry["event"] == event_name(event)]
+        phrase = words(event)
         if not line.expected:
-            return line.fault(f"the {told} was sent") if found else None
-        if not found:
-            return line.fault(f"the {told} was not sent since the last step", self._state())
+            return line.fault(f"the {phrase} was sent") if sent_lines else None
+        if not sent_lines:
+            return line.fault(f"the {phrase} was not sent since the last step", self._state())
         # The log does not show objects that are forwarded unchanged.
-        sent = [_with_handed_on(entry, self._controller.messages.get(number)) for number, entry in found]
+        sent = [_with_handed_on(entry, self._controller.messages.get(number)) for number, entry in sent_lines]
         if line.data is None or any(_agrees(line.data, data) for data in sent):
             return None
         unknown = _first_unknown(line.data, sent[-1], self._handed_on(event))
         if unknown:
-            message = f"`{unknown}` of the {told} cannot be compared: the node forwards it unchanged"
+            message = f"`{unknown}` of the {phrase} cannot be compared: the node forwards it unchanged"
             return line.fault(message, "leave it out: times and fields of unknown definitions are not compared")
-        return line.fault(f"the {told} was sent with other data", f"the sent data is {json_text(sent[-1])}")
+        return line.fault(f"the {phrase} was sent with other data", f"the sent data is {json_text(sent[-1])}")
 
     def _handed_on(self, event: sct.Event) -> list[Sequence[str]]:
         """Return the paths in a command at which data is forwarded unchanged."""
@@ -495,13 +495,13 @@ class Player(Drive):
     def _state(self) -> str:
         engine = self._controller.engine
         plants = [plant for plant in self._graph.model.plants if plant.kind == sct.PlantKind.behaviour]
-        told = [f"{plant.origin}.{plant.locations[engine.location(plant)].name}" for plant in plants]
-        told += [
+        parts = [f"{plant.origin}.{plant.locations[engine.location(plant)].name}" for plant in plants]
+        parts += [
             f"{plant.origin}.{variable.name} = {engine.value(variable)}"
             for plant in plants
             for variable in plant.variables
         ]
-        return f"the robot is in {', '.join(told)}" if told else ""
+        return f"the robot is in {', '.join(parts)}" if parts else ""
 
 
 _WHY = {
@@ -511,24 +511,24 @@ _WHY = {
 }
 
 
-def _is_raw(reads: Sequence[Read], data: Any) -> bool:
+def _is_raw(reads: Sequence[LoggedValue], data: Any) -> bool:
     """Return whether data has the fields of the ROS message, not what the event log has in their place.
 
     The event log has literals for enums, and lists for arrays that the model reads as a whole. Raises NamingError for
     data with both, and for a lone value in the place of a literal.
     """
-    values = [(read, _value_at(data, read.path)) for read in reads]
+    values = [(message_read, _value_at(data, message_read.path)) for message_read in reads]
     raw = [
         value
-        for read, value in values
+        for message_read, value in values
         if value is not None
         and (
             not isinstance(value, str)
-            if read.conversion is not None
+            if message_read.conversion is not None
             else isinstance(value, dict) and bool(value) and all(name.isdigit() for name in value)
         )
     ]
-    has_literals = any(read.conversion is not None and isinstance(value, str) for read, value in values)
+    has_literals = any(message_read.conversion is not None and isinstance(value, str) for message_read, value in values)
     if raw and (has_literals or not isinstance(data, dict)):
         raise NamingError(
             f"{json.dumps(raw[0])} is ROS data instead of a literal", "write `with message {…}` with all fields"
@@ -548,21 +548,21 @@ def _value_at(data: Any, path: Sequence[str]) -> Any:
 
 def _by_index(value: Any, reads: Sequence[Sequence[str]]) -> Any:
     """Return data in which objects from index to element replace lists whose elements are read one by one."""
-    if isinstance(value, list) and any(read and read[0].isdigit() for read in reads):
+    if isinstance(value, list) and any(path and path[0].isdigit() for path in reads):
         value = {str(index): element for index, element in enumerate(value)}
     if not isinstance(value, dict):
         return value
-    below = {name: [read[1:] for read in reads if read and read[0] == name] for name in value}
+    below = {name: [path[1:] for path in reads if path and path[0] == name] for name in value}
     return {name: _by_index(inner, below[name]) for name, inner in value.items()}
 
 
-def _agrees(expected: Any, found: Any) -> bool:
+def _agrees(expected: Any, actual: Any) -> bool:
     """Return whether data has the expected values; fields that are not named may have any value."""
-    if isinstance(expected, dict) and isinstance(found, dict):
-        return all(name in found and _agrees(value, found[name]) for name, value in expected.items())
-    if isinstance(expected, list) and isinstance(found, list):
-        return len(expected) == len(found) and all(map(_agrees, expected, found))
-    return same(expected, found)
+    if isinstance(expected, dict) and isinstance(actual, dict):
+        return all(name in actual and _agrees(value, actual[name]) for name, value in expected.items())
+    if isinstance(expected, list) and isinstance(actual, list):
+        return len(expected) == len(actual) and all(map(_agrees, expected, actual))
+    return same(expected, actual)
 
 
 def _with_handed_on(entry: Mapping[str, Any], message: Any) -> Any:
@@ -578,13 +578,13 @@ def _plain(value: Any) -> Any:
     return [_plain(inner) for inner in value] if isinstance(value, list) else value
 
 
-def _first_unknown(expected: Any, found: Any, handed_on: Sequence[Sequence[str]], path: tuple[str, ...] = ()) -> str:
+def _first_unknown(expected: Any, actual: Any, handed_on: Sequence[Sequence[str]], path: tuple[str, ...] = ()) -> str:
     """Return the first expected field that is missing in forwarded data, as `pose.position`; empty if there is none."""
-    if isinstance(expected, dict) and isinstance(found, dict):
+    if isinstance(expected, dict) and isinstance(actual, dict):
         for name, value in expected.items():
             inside = (*path, name)
-            if name in found:
-                unknown = _first_unknown(value, found[name], handed_on, inside)
+            if name in actual:
+                unknown = _first_unknown(value, actual[name], handed_on, inside)
             else:
                 unknown = ".".join(inside) if any(inside[: len(way)] == way for way in handed_on) else ""
             if unknown:

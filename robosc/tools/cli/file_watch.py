@@ -26,16 +26,16 @@ def whenever_files_change(
     `do` gets the names of the changed files. Models are the `.rscd` files in the folders: a new one may be a missing
     library. Only an exception, such as KeyboardInterrupt, ends this.
     """
-    read: list[str] = []
+    inputs: list[str] = []
     changed: list[str] = []
     while True:
-        before = _stamps([*named, *read], folders)
-        with files.noting():
+        before = _stamps([*named, *inputs], folders)
+        with files.record_inputs():
             do(changed)
-            read = files.inputs()
+            inputs = files.inputs()
         # Files that were read for the first time are compared with their present state, all others with their earlier
         # state.
-        before = _stamps([*named, *read], folders) | before
+        before = _stamps([*named, *inputs], folders) | before
         while not (changed := _changed(before, _stamps(list(before), folders))):
             time.sleep(PERIOD_SECONDS)
 
@@ -47,10 +47,10 @@ def _stamps(names: Iterable[str], folders: Iterable[str | Path]) -> dict[str, _S
 
 def _stamp(name: str) -> _Stamp | None:
     try:
-        found = Path(name).stat()
+        status = Path(name).stat()
     except OSError:  # it does not exist at the moment
         return None
-    return found.st_mtime_ns, found.st_size, found.st_ino
+    return status.st_mtime_ns, status.st_size, status.st_ino
 
 
 def _changed(before: Mapping[str, _Stamp | None], now: Mapping[str, _Stamp | None]) -> list[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from robosc.base.ros_types import DefinitionError, Section
-from robosc.base.ros_types.wire import PRIMITIVES, Basic, Nested, Sequence
+from robosc.base.ros_types.wire import PRIMITIVES, Basic, NestedType, Sequence
 from robosc.model import expression as ex
 from robosc.model import robosc, rosgraph
 
@@ -32,8 +32,8 @@ _TYPES: Mapping[str, type[ex.Type]] = {
 #: Kind of ROS type of each non-basic type.
 _KINDS: Mapping[type[robosc.DataType], type[WireType]] = {
     robosc.Array: Sequence,
-    robosc.ComplexDataTypeReference: Nested,
-    robosc.InterfaceTypeReference: Nested,
+    robosc.ComplexDataTypeReference: NestedType,
+    robosc.InterfaceTypeReference: NestedType,
 }
 
 
@@ -46,7 +46,7 @@ class _Defined(NamedTuple):
 
     def fields(self) -> Fields | None:
         """Return the fields of an object. None if they are unknown."""
-        if not isinstance(self.wire, Nested):
+        if not isinstance(self.wire, NestedType):
             return None
         try:
             return self.distribution.fields(self.wire.package, self.wire.name, self.section)
@@ -54,7 +54,7 @@ class _Defined(NamedTuple):
             return None
 
 
-class KeptTypes:
+class StoredTypes:
     """Creates the types of variables that hold objects.
 
     A graph serves both ROS versions. An object of a ROS type has the fields that all known definitions share, and those
@@ -70,15 +70,15 @@ class KeptTypes:
         self, declared: robosc.DataType, interface: rosgraph.Interface, section: Section, path: Several[str]
     ) -> ex.Type:
         """Return the type of a variable of a data type that holds the value at `path` of a ROS message."""
-        found = [
+        definitions = [
             _Defined(distribution, *reached)
             for distribution in self._distributions
-            if (reached := distribution.reached(interface.package, interface.type, section, path)) is not None
+            if (reached := distribution.type_at(interface.package, interface.type, section, path)) is not None
         ]
         self._left = MOST_VALUES
-        made = self._type(declared, found)
-        if self._left >= 0 and made is not None:
-            return made
+        result = self._type(declared, definitions)
+        if self._left >= 0 and result is not None:
+            return result
         return rosgraph.ArrayType() if isinstance(declared, robosc.Array) else rosgraph.ObjectType()
 
     def _type(self, declared: robosc.DataType | None, defined: Several[_Defined]) -> ex.Type | None:
@@ -86,7 +86,7 @@ class KeptTypes:
         while isinstance(declared, robosc.ComplexDataTypeReference) and isinstance(declared.type, robosc.EnumDataType):
             declared = declared.type.type
         kinds = {type(known.wire) for known in defined} if declared is None else {_KINDS.get(type(declared), Basic)}
-        if kinds == {Nested}:
+        if kinds == {NestedType}:
             return self._object(declared, defined)
         if kinds == {Sequence}:
             inner = [known._replace(wire=known.wire.element) for known in defined if isinstance(known.wire, Sequence)]
@@ -100,14 +100,16 @@ class KeptTypes:
 
     def _object(self, declared: robosc.DataType | None, defined: Several[_Defined]) -> rosgraph.ObjectType:
         self._left -= 1
-        made = rosgraph.ObjectType()
+        result = rosgraph.ObjectType()
         named = {}
         if isinstance(declared, robosc.ComplexDataTypeReference) and isinstance(declared.type, robosc.ObjectDataType):
-            named = {given.name: given.type for given in declared.type.properties}
-        found = [(definition, fields) for definition in defined if (fields := definition.fields()) is not None]
+            named = {field.name: field.type for field in declared.type.properties}
+        known_fields = [(definition, fields) for definition in defined if (fields := definition.fields()) is not None]
         # Only the seconds of times have the same meaning in ROS 1 and ROS 2, and rospy has another name for them.
         known = [
-            (definition, fields) for definition, fields in found if str(definition.wire).partition("/")[0] != _TIMES
+            (definition, fields)
+            for definition, fields in known_fields
+            if str(definition.wire).partition("/")[0] != _TIMES
         ]
         agreed = [name for name in (known[0][1] if known else ()) if all(name in fields for _, fields in known)]
         for name in dict.fromkeys([*agreed, *named]):
@@ -120,5 +122,5 @@ class KeptTypes:
             ]
             kind = self._type(named.get(name), wires)
             if kind is not None:
-                made.fields.append(rosgraph.ObjectField(name=name, type=kind))
-        return made
+                result.fields.append(rosgraph.ObjectField(name=name, type=kind))
+        return result

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from robosc.run.runtime.core.listening import Listener, ReportSubscriber
+    from robosc.run.runtime.core.subscriber import Listener, ReportSubscriber
 
 
 def listen(heard: Sequence[tuple[Sequence[str], Listener]]) -> ReportSubscriber:
@@ -17,6 +17,6 @@ def listen(heard: Sequence[tuple[Sequence[str], Listener]]) -> ReportSubscriber:
     no ROS.
     """
     import robosc.run.runtime.ros2.node  # noqa: F401, PLC0415  # reports what is missing
-    from robosc.run.runtime.ros2.listening import Ros2Subscriber  # noqa: PLC0415
+    from robosc.run.runtime.ros2.subscriber import Ros2Subscriber  # noqa: PLC0415
 
     return Ros2Subscriber(heard)

@@ -96,4 +96,4 @@ def what_of(target: Any) -> str | None:
     """Return the kind from `CLASSES` of the element that a name refers to, or None if there is none."""
     if isinstance(target, rsc.InterfaceTypeReference):
         return "struct"
-    return next((kind for made, kind in _CLASSES.items() if isinstance(target, made)), None)
+    return next((kind for element_kind, kind in _CLASSES.items() if isinstance(target, element_kind)), None)
