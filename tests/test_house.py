@@ -124,7 +124,7 @@ def test_no_rule_imports_another() -> None:
     assert [pair for pair in found if (pair[0][:3], pair[1][1:4]) == (rules, rules)] == []
 
 
-#: What the second reading of a robot's text shares with the first: how expressions are computed, and walks over them.
+#: Modules that the second reading of a robot's text shares with the first: evaluation of expressions, and walks.
 COMMON = {"evaluation", "operators", "walks"}
 
 

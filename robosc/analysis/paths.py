@@ -60,8 +60,8 @@ class Layers:
     def path_to(self, goal: Diagram, effort: int | None = None) -> Path | None:
         """Return a shortest path to a state of `goal`; None if there is none or the effort is exceeded.
 
-        The effort counts the nodes that every move visits. Of several paths, the result is always the same one: by the
-        order of the moves, then by the codes of the states.
+        The effort counts the nodes that every move visits. The choice among several paths is fixed: by the order
+        of the moves, then by the codes of the states.
         """
         steps = 0
         while not (self._layers[steps] & goal).satisfiable():

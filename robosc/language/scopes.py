@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from robosc.language.text import Text
     from robosc.model.semantics.instances import Resolved
 
-#: Elements by name. Of duplicate names the first counts (the uniqueness rules report the second).
+#: Elements by name. The first of several equal names counts (the uniqueness rules report the second).
 Names: TypeAlias = "Mapping[str, Any]"
 
 

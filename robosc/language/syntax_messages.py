@@ -155,9 +155,17 @@ def closest(word: str, known: Iterable[str], *, cutoff: float) -> str | None:
 
 
 def did_you_mean(word: str, known: Iterable[str], *, cutoff: float) -> Repair | None:
-    """Return the repair that replaces a word of a RoboSC text by the closest name, or None if no name is close."""
+    """Return the repair that offers the closest name for a word of a RoboSC text, or None if no name is close.
+
+    A name is never replaced without a choice: the closest name of `unlocked` is `locked`.
+    """
     close = closest(word, known, cutoff=cutoff)
-    return Repair(f"did you mean `{escape_keyword(close)}`?", escape_keyword(close)) if close else None
+    return offer_name(escape_keyword(close)) if close else None
+
+
+def offer_name(name: str) -> Repair:
+    """Return the repair that offers a name as it is written in the text."""
+    return Repair(f"did you mean `{name}`?", choices=(name,))
 
 
 def _alike(rule: str) -> set[str]:
@@ -185,12 +193,19 @@ def hint(tokens: Tokens, index: int, expectations: Sequence[str], block: Block) 
     if "->" in expectations and block.level is RULES and (token.is_first or before.text == "default"):
         return _value_hint(token, has_value=index < block.after and not token.is_keyword("}"))
     if token.text in {"=", ":", ":=", "=>", "->"} and len(symbols) == 1:
-        return Repair(f"write `{symbols[0]}`", symbols[0])
+        return _symbol_hint(token, symbols[0], expectations)
     if "." in {token.text, before.text} and Kind.NUMBER in {token.kind, before.kind, tokens[index + 1].kind}:
         return _both_sides(tokens, index)
     if token.kind is Kind.NUMBER and not token.text.replace(".", "").isdigit():
         return _without_exponent(tokens, index)
     return _word_hint(tokens, index, expectations, block) if token.kind is Kind.WORD else _MEANT.get(token.text)
+
+
+def _symbol_hint(token: Token, symbol: str, expectations: Collection[str]) -> Repair:
+    """Return the hint for a symbol in the place of another one."""
+    if token.text == "->" and "goto" in expectations:
+        return Repair("write `goto`, or `=>` for an implication", choices=("goto", "=>"))
+    return Repair(f"write `{symbol}`", symbol)
 
 
 def _is_name(tokens: Tokens, index: int, expectations: Sequence[str]) -> bool:

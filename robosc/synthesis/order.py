@@ -30,8 +30,8 @@ _LONGER = 1.25
 def variable_order(size: int, edges: Sequence[Sequence[int]]) -> list[int]:
     """Order the vertices 0 … size-1 of a hypergraph with a small total span; deterministic.
 
-    The result of the order by breadth is preferred if it is not much longer: in practice it costs least. Of two orders
-    with equal span, the one whose edges lie farther up wins.
+    The result of the order by breadth is preferred if it is not much longer: in practice it costs least. If two orders
+    have equal spans, the one whose edges lie farther up wins.
     """
     graph = _Hypergraph(size, edges)
     by_index, broad = _improved(list(range(size)), graph), _improved(_by_breadth(graph), graph)

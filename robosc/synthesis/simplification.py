@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 def simplify(expression: ex.Expression, states: Diagram, encoding: Encoding) -> ex.Expression:
     """Return a copy of a boolean expression without its redundant parts, equal to it in all of `states`.
 
-    Each operand is simplified in the states in which the other operand does not decide the result. Of two equivalent
-    operands, the first stays. If nothing is redundant, the copy is identical to the expression.
+    Each operand is simplified in the states in which the other operand does not decide the result. If two operands are
+    equivalent, the first stays. If nothing is redundant, the copy is identical to the expression.
     """
 
     def step(part: Part) -> Generator[Part, ex.Expression, ex.Expression]:

@@ -215,7 +215,7 @@ def test_an_edit_mends_the_text(wrong: str, right: str) -> None:
     (finding,) = found.findings
     mended = found.texts[finding.file]
     text = Text(finding.file, mended)
-    for edit in finding.edits:
+    for edit in finding.edits or finding.alternatives[0].edits:
         start = text.offset(edit.span.line, edit.span.column)
         end = text.offset(edit.span.end_line, edit.span.end_column)
         mended = mended[:start] + edit.text + mended[end:]

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from robosc.base.diagnostics import Diagnostic
+from robosc.base.diagnostics import Diagnostic, Edit
 from robosc.base.ros_types import RosTypes
 from robosc.language import cif
 from robosc.language.checks import check
@@ -42,8 +42,13 @@ def replaced(before: Sequence[str], after: Sequence[str]) -> list[tuple[str, str
 
 def suggestions(findings: Iterable[Diagnostic], file: str) -> Iterator[Diagnostic]:
     for finding in findings:
-        if finding.file == file and finding.edits and (finding.hint or "").startswith("did you mean"):
+        if finding.file == file and offered(finding) and (finding.hint or "").startswith("did you mean"):
             yield finding
+
+
+def offered(finding: Diagnostic) -> Sequence[Edit]:
+    """Return the edits of a finding: a word of the language is replaced, a name is only offered."""
+    return finding.edits or next((way.edits for way in finding.alternatives), ())
 
 
 @pytest.mark.slow
@@ -59,10 +64,10 @@ def test_a_name_in_a_model_is_replaced_whole(robot: Path, mistyped: str) -> None
         reading = read(robot, (), INTERFACES, Documents({str(robot): broken}))
         found = [*reading.findings, *check(reading.base, reading.findings, INTERFACES)]
         for finding in suggestions(found, str(robot)):
-            after = Text(str(robot), broken).after(finding.edits)
+            after = Text(str(robot), broken).after(offered(finding))
             changed = replaced(words(broken), words(after))
-            assert {new for _, new in changed} <= {finding.hint.split("`")[1]} or len(finding.edits) > 1
-            assert len(changed) == len(finding.edits), (finding, changed)
+            assert {new for _, new in changed} <= {finding.hint.split("`")[1]} or len(offered(finding)) > 1
+            assert len(changed) == len(offered(finding)), (finding, changed)
 
 
 @pytest.mark.parametrize("mistyped", MISTYPED)
@@ -74,7 +79,7 @@ def test_a_name_in_cif_is_replaced_whole(mistyped: str) -> None:
             wrong = MISTYPED[mistyped](token.text)
             broken = content[: token.start] + wrong + content[token.end :]
             for finding in suggestions(cif.read("a.cif", Documents({"a.cif": broken})).findings, "a.cif"):
-                after = Text("a.cif", broken).after(finding.edits)
+                after = Text("a.cif", broken).after(offered(finding))
                 ((_, new),) = replaced(words(broken), words(after))
                 assert new.strip("$") in finding.hint
                 seen += 1
@@ -107,7 +112,7 @@ def test_a_dotted_name_keeps_its_other_parts(event: str, target: str, suggested:
     hints = [finding.hint for finding in found if finding.rule == "unresolved-reference"]
     assert hints == [None if suggested is None else f"did you mean `{suggested}`?"]
     if suggested is not None:
-        mended = Text("a.cif", content).after(found[0].edits)
+        mended = Text("a.cif", content).after(offered(found[0]))
         assert cif.read("a.cif", Documents({"a.cif": mended})).findings == []
         word, wrong = ("goto", target) if target != "first" else ("edge", event)
         assert mended == content.replace(f"{word} {wrong}", f"{word} {suggested}")
@@ -117,14 +122,14 @@ def test_the_first_part_of_a_dotted_name_is_replaced_alone() -> None:
     content = PARTS.replace("group g:", "group outer:").replace("{0}", "outr.loop.entered").replace("{1}", "first")
     (finding,) = cif.read("a.cif", Documents({"a.cif": content})).findings
     assert finding.hint == "did you mean `outer.loop.entered`?"
-    assert Text("a.cif", content).after(finding.edits) == content.replace("outr.loop", "outer.loop")
+    assert Text("a.cif", content).after(offered(finding)) == content.replace("outr.loop", "outer.loop")
 
 
 def test_a_suggested_keyword_of_cif_has_its_dollar_sign() -> None:
     content = "controllable c;\nplant p: location $initial: initial; marked; edge c goto initia; end\n"
     (finding,) = cif.read("a.cif", Documents({"a.cif": content})).findings
     assert finding.hint == "did you mean `$initial`?"
-    mended = Text("a.cif", content).after(finding.edits)
+    mended = Text("a.cif", content).after(offered(finding))
     assert cif.read("a.cif", Documents({"a.cif": mended})).findings == []
 
 

@@ -284,7 +284,7 @@ def _reason(error: OSError | RuntimeError) -> str:
 def temporary_folder() -> Iterator[Path]:
     """Create a folder that is removed at the end of the `with` block, even after a signal that ends the process.
 
-    Such a signal raises KeyboardInterrupt in the block, and takes effect after the folder is removed.
+    The signal raises KeyboardInterrupt in the block, and takes effect after the folder is removed.
     """
     with _Signals() as signals:
         folder = Path(tempfile.mkdtemp(prefix="robosc-"))

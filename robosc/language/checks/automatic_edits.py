@@ -46,7 +46,7 @@ class _Offsets:
         self._shifts = [0]
         for (start, end), (_, new) in zip(self._ranges, spans, strict=True):
             self._shifts.append(self._shifts[-1] + len(new) - (end - start))
-        self._written = [
+        self.written = [
             (start + shift, start + shift + len(new))
             for start, shift, (_, new) in zip(starts, self._shifts, spans, strict=False)
         ]
@@ -67,7 +67,7 @@ class _Offsets:
 
     def is_written(self, start: int, end: int) -> bool:
         """Return whether a range of the text after the edits contains new text."""
-        return any(first < end and start < last for first, last in self._written)
+        return any(first < end and start < last for first, last in self.written)
 
 
 def objection(
@@ -78,7 +78,8 @@ def objection(
     `edits` maps the path of each file, as findings have it, to its edits. `mended` are the findings that the edits
     should mend. A model is worse if less of it can be read, if a finding is new, if one of `mended` stays, if a name
     refers to another element, or if a comment or a string has changed. A syntax error hides findings of the rules, so
-    its repair may reveal them. Each mended syntax error must reduce the number of syntax errors by one.
+    its repair may reveal them, but no errors on the lines that it changes. Each mended syntax error must reduce the
+    number of syntax errors by one.
     """
     return _Comparison(before, after, edits).objection(mended)
 
@@ -161,8 +162,8 @@ def _leads_on(finding: Diagnostic, before: CheckedModel, check: Callable[[str], 
         after = check(text.after(edits))
         comparison = _Comparison(before, after, {text.file: edits})
         if comparison.objection([finding]) is None:
-            errors = (found for found in after.findings if found.severity is Severity.ERROR)
-            return not any(found.file == text.file and found.span.line in changed for found in errors)
+            errors = (other for other in after.findings if other.severity is Severity.ERROR)
+            return not any(error.file == text.file and error.span.line in changed for error in errors)
         revealed = comparison.revealed(finding)
         if revealed is None or comparison.objection([finding], revealed=1) is not None:
             return False
@@ -206,7 +207,10 @@ class _Comparison:
         if damage is not None:
             return damage
         is_syntax = any(finding.rule == "syntax" for finding in mended)
-        worse = self._syntax_error(mended, revealed) if is_syntax else self._new_finding(mended)
+        if is_syntax:
+            worse = self._syntax_error(mended, revealed) or (None if revealed else self._revealed_error(mended))
+        else:
+            worse = next(self._new_findings(mended), None)
         if worse is not None:
             return f"line {worse.span.line}: {worse.message}"
         name = None if is_syntax else next(self._changed_names(), None)
@@ -287,16 +291,26 @@ class _Comparison:
         places = {(other.file, _start(other, self._files_after[other.file].text), other.message) for other in after}
         return next((other for other in mended if (other.file, self._start(other), other.message) in places), None)
 
-    def _new_finding(self, mended: Sequence[Diagnostic]) -> Diagnostic | None:
-        """Return a finding of a rule on a line with more findings of this rule than before."""
+    def _revealed_error(self, mended: Sequence[Diagnostic]) -> Diagnostic | None:
+        """Return a new error of a rule on an edited line: it suggests that the edit was not meant."""
+        lines = {
+            (path, self._files_after[path].text.span(start, start).line)
+            for path, moved in self._moved.items()
+            for start, _ in moved.written
+        }
+        new = (finding for finding in self._new_findings(mended) if finding.rule != "syntax")
+        errors = (finding for finding in new if finding.severity is Severity.ERROR)
+        return next((finding for finding in errors if (finding.file, finding.span.line) in lines), None)
+
+    def _new_findings(self, mended: Sequence[Diagnostic]) -> Iterator[Diagnostic]:
+        """Yield the findings of a rule on a line with more findings of this rule than before."""
         left = Counter(map(self._line, self._before.findings))
         left.subtract(map(self._line, mended))
         for finding in self._after.findings:
             key = finding.file, finding.rule, finding.span.line
             left[key] -= 1
             if left[key] < 0:
-                return finding
-        return None
+                yield finding
 
     def _start(self, finding: Diagnostic) -> int:
         """Return where a finding from before starts after the edits."""

@@ -40,6 +40,8 @@ class Fault:
     text: str | None = None
     #: New name of the property, if the hint proposes it.
     new_name: str | None = None
+    #: Whether the text or the name is a guess, so that the user chooses.
+    is_guess: bool = False
     #: Existing fields with their types, if the property is none of them or has no type.
     others: Mapping[str, str] | None = None
 
@@ -160,6 +162,7 @@ class _Comparison:
                     hint,
                     text=text,
                     new_name=close[0] if close and text is None else None,
+                    is_guess=True,
                     others=None if close else others,
                 )
 

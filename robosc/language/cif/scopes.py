@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from robosc.base.diagnostics import Repair
 from robosc.language.cif.faults import CHANNELS, CifFaultError, construct, place_of
 from robosc.language.cif.parsing import identifier
-from robosc.language.syntax_messages import closest
+from robosc.language.syntax_messages import closest, offer_name
 from robosc.model import sct
 
 if TYPE_CHECKING:
@@ -113,7 +113,7 @@ def _similar_name(name: str, position: int, known: Iterable[str]) -> Repair | No
     if close is None:
         return None
     whole = absolute + ".".join([*parts[:position], close, *parts[position + 1 :]])
-    return Repair(f"did you mean `{identifier(whole)}`?", identifier(whole))
+    return offer_name(identifier(whole))
 
 
 class Specification:

@@ -11,7 +11,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from robosc.base.diagnostics import Repair
 from robosc.language.cif import plant_invariants
 from robosc.language.cif.faults import (
     CHANNELS,
@@ -27,7 +26,7 @@ from robosc.language.cif.faults import (
 from robosc.language.cif.parsing import identifier
 from robosc.language.cif.scopes import Declaration, Scope, Specification, plain
 from robosc.language.cif.values import Values, computed_from_itself, constant_value, literal
-from robosc.language.syntax_messages import closest
+from robosc.language.syntax_messages import closest, offer_name
 from robosc.model import expression as ex
 from robosc.model import sct
 from robosc.model.semantics.cif_types import Type, contains, format_type, overlap
@@ -594,5 +593,5 @@ def _words(node: Any) -> str:
 
 def _missing(name: str, known: list[str]) -> tuple[str, Any]:
     close = closest(name, known, cutoff=0.6)
-    repair = Repair(f"did you mean `{identifier(close)}`?", identifier(close)) if close else None
+    repair = offer_name(identifier(close)) if close else None
     return f"there is no location `{name}` here", repair

@@ -36,7 +36,7 @@ _HEADINGS = {
     engine.Role.trigger: "Triggers: what the controller sends, by the control loop, where the supervisor allows it.",
     engine.Role.silent: "Silent events: the control loop runs them until none is enabled.",
     engine.Role.data: "Data: the control loop chooses what the triggers send.",
-    engine.Role.incoming: "What comes from the robot: perform these.",
+    engine.Role.incoming: "Data from the robot: perform these.",
     engine.Role.timeout: "Timeouts: they happen when their time is up.",
 }
 

@@ -59,7 +59,7 @@ def _lines(model: sct.SupervisoryControlModel, supervisor: sct.Supervisor, folde
     yield ""
     lacking = _lacking(model, supervisor)
     added = any(lacking.values())
-    yield from document(["What synthesis added." if added else "Synthesis added nothing to the requirements."])
+    yield from document(["Conditions by synthesis." if added else "Synthesis added nothing to the requirements."])
     yield f"supervisor automaton {Names(taken).fresh('sup')}:"
     events = {event: escape_keyword(event_name(event)) for event in lacking}
     yield f"  alphabet {join_by_commas(events.values())};" if events else "  alphabet;"

@@ -55,7 +55,7 @@ class Writer:
                 *([""] if requirements else []),
                 *requirements,
                 "",
-                *document(["What synthesis added." if added else "Synthesis added nothing to the requirements."]),
+                *document(["Conditions by synthesis." if added else "Synthesis added nothing to the requirements."]),
                 f"supervisor automaton {self._names.supervisor}:",
                 f"  alphabet {join_by_commas(events)};" if events else "  alphabet;",
                 "",

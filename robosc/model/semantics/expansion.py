@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import reduce
+from itertools import islice
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from robosc.model import expression as ex
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
 LARGEST = 20_000
 #: Largest integer that a constant expression computes with. Integers of a robot have 64 bits.
 CLAMP = 1 << 128
+#: Maximum number of elements of a constant without a value that is expanded.
+_LONGEST = 100
 _NAMED = (robosc.Constant, robosc.Condition, robosc.FormalParameter)
 _OPERATORS = {"all": ex.Conjunction, "any": ex.Disjunction, "count": ex.Addition}
 
@@ -97,8 +100,8 @@ class Expansion:
         self._instances = instances
         self._known: dict[tuple[ex.Expression, Instance | None, bool], ex.Expression] = {}
         self._sizes: dict[Any, _Size] = {}
-        #: Literals of constants that are expanded already.
-        self._constants: dict[tuple[robosc.NamedExpression, Instance | None], ex.Expression] = {}
+        #: Constants that are expanded already: literals, short expressions, or None for a long one.
+        self._constants: dict[tuple[robosc.NamedExpression, Instance | None], ex.Expression | None] = {}
         self._elements: dict[ex.Located, ex.Located] = {}
         #: Expanded arguments of functions without a place yet: the first use takes the argument, later ones copy it.
         self._unplaced: set[ex.Expression] = set()
@@ -160,7 +163,10 @@ class Expansion:
                 size = yield named
             case robosc.Call(function=robosc.Function() as function) if function.value is not None:
                 called = yield function
-                return called.with_arguments(dict(zip(function.parameters, inside, strict=False)))
+                arguments = dict(zip(function.parameters, inside, strict=False))
+                # An argument is expanded even if the function does not read it.
+                unread = (size for parameter, size in arguments.items() if parameter not in called.parameters)
+                return sum(unread, start=called.with_arguments(arguments))
             case robosc.InstanceQuantifier(template=robosc.Component()) if self._instances:
                 copies = sum(1 for _ in self._instances.of(element.template))
                 inside = [part.times(copies) for part in inside]
@@ -199,16 +205,21 @@ class Expansion:
         if owner is None and _is_member(item) and isinstance(item, robosc.Condition):
             return None
         if (item, owner) in self._constants:
-            return copy_tree(self._constants[item, owner])
+            known = self._constants[item, owner]
+            return None if known is None else copy_tree(known)
+        if isinstance(item, robosc.Constant) and self._size(item.value) > LARGEST:
+            self._constants[item, owner] = None
+            return None
         opened = environment.opened | {item}
         inner = _Environment(owner, owner.arguments if owner else {}, {}, opened, moved=True)
         value: ex.Expression = yield (item.value, inner)
         if not isinstance(item, robosc.Constant):
             return value
         folded = _folded(value)
-        if folded is not value:
-            self._constants[item, owner] = copy_tree(folded)
-        return folded
+        # A constant without a value, which another finding reports, stays a name where it would grow without bound.
+        is_short = folded is not value or sum(1 for _ in islice(tree(folded), _LONGEST + 1)) <= _LONGEST
+        self._constants[item, owner] = copy_tree(folded) if is_short else None
+        return folded if is_short else None
 
     def _call(self, call: robosc.Call, environment: _Environment) -> Generator[Any, Any, ex.Expression | None]:
         function = call.function
@@ -322,7 +333,7 @@ def _value(expression: ex.Expression) -> Value | None:
 def _clamped(value: int) -> int:
     """Limit an integer far outside of 64 bits to `CLAMP`.
 
-    Such an integer is too large in any case, and repeated squares would fill memory.
+    A larger integer is too large in any case, and repeated squares would fill memory.
     """
     return saturate(value, -CLAMP, CLAMP)
 

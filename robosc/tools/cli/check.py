@@ -103,6 +103,7 @@ def _mend(model: str, paths: Paths) -> None:
     except UnicodeDecodeError:
         return  # writing the text would lose the bytes that cannot be decoded
     seen = {content}
+    count = 0
     for _ in range(_ROUNDS):
         checked_model = checked(content)
         edits = safe_edits(checked_model, checked)
@@ -113,8 +114,10 @@ def _mend(model: str, paths: Paths) -> None:
             break
         seen.add(after)
         content = after
+        count += len(edits)
     if content != before:
         write_file(model, content)
+        say(f"{visible(model)}: {count} edit{'s' * (count != 1)}", err=True)
 
 
 def _check(models: Sequence[str], form: str, paths: Paths) -> None:

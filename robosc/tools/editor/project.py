@@ -332,11 +332,11 @@ class Snapshot:
             base = None if analysis is None else analysis.reading.base
             if not isinstance(base, robosc.Library):
                 continue
-            for found in self.analyses_with(base.name):
-                if found.path not in known:
-                    known.add(found.path)
-                    pending.append(found.path)
-                    yield found
+            for importer in self.analyses_with(base.name):
+                if importer.path not in known:
+                    known.add(importer.path)
+                    pending.append(importer.path)
+                    yield importer
 
     def uri(self, file: str) -> str:
         """Return the URI of a file; if the file is open, the URI of the editor."""

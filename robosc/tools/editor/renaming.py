@@ -113,7 +113,7 @@ def _require_same(
     """
     analyses = {analysis.path: analysis} | {dependent.path: dependent for dependent in snapshot.analyses_with(word)}
     by_path = {Path(name).resolve(): changes for name, changes in edits.items()}
-    analyses |= {found.path: found for found in snapshot.importers(by_path)}
+    analyses |= {importer.path: importer for importer in snapshot.importers(by_path)}
     for later in analyses.values():
         for file in later.reading.files.values():
             skipped = (file.text.content[start:end] for start, end in file.skipped)

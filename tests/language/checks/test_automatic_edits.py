@@ -226,27 +226,39 @@ def test_a_point_in_a_comment_is_none() -> None:
     assert fixed(content) == content.replace(". /* c.d */ x", "[0]. /* c.d */ x")
 
 
-def test_a_guess_that_leads_to_another_finding_is_not_made() -> None:
-    content = ROBOT.replace("goto moving", "do sped := true goto moving").replace(
-        "behaviour {", "behaviour { variable speed: integer(0..3) = 0"
-    )
-    found = checked(content)
-    (finding,) = [found for found in found.findings if found.edits]
-    assert "`speed`" in finding.hint
+@pytest.mark.parametrize(
+    ("name", "close"),
+    [("unlocked", "locked"), ("not_locked", "locked"), ("door_2_open", "door_1_open"), ("locekd", "locked")],
+)
+def test_a_name_is_offered_and_never_replaced(name: str, close: str) -> None:
+    """The closest name can mean the opposite."""
+    content = f"""robot Gate {{
+      component Gate {{
+        incoming message go with type: none
+        behaviour {{ initial marked state locked {{}} marked state door_1_open {{}} }}
+      }}
+      requirement go needs Gate.{name}
+    }}"""
+    (finding,) = [finding for finding in checked(content).findings if "unreachable" not in finding.rule]
+    assert finding.hint == f"did you mean `{close}`?"
+    assert finding.edits == ()
+    assert [way.title for way in finding.alternatives] == [f"write `{close}`"]
     assert fixed(content) == content
-    text = found.reading.file.text
-    why = objection(found, checked(text.after(finding.edits)), {text.file: finding.edits}, [finding])
-    assert why == "line 6: a value for `speed` must be integer, found boolean"
 
 
-def test_one_bad_edit_keeps_no_other_back() -> None:
-    """Safe edits are applied although other edits are unsafe."""
-    wrong = (
-        ROBOT.replace("goto moving", "do sped := true goto movng")
-        .replace("goto idle", "goto idel")
-        .replace("behaviour {", "behaviour { variable speed: integer(0..3) = 0")
+def test_an_arrow_is_no_implication_where_a_state_may_follow() -> None:
+    content = ROBOT.replace("goto moving", "if true -> moving")
+    (finding,) = [finding for finding in checked(content).findings if finding.rule == "syntax"]
+    assert finding.hint == "write `goto`, or `=>` for an implication"
+    assert fixed(content) == content
+
+
+def test_an_edit_that_reveals_an_error_on_its_line_is_not_made() -> None:
+    """The text `! moving = 3` negates only the first name."""
+    content = ROBOT.replace("behaviour {", "behaviour { variable speed: integer(0..3) = 0").replace(
+        "goto moving", "if not speed = 3 goto moving"
     )
-    assert fixed(wrong) == wrong.replace("movng", "moving").replace("idel", "idle")
+    assert fixed(content) == content
 
 
 @pytest.mark.parametrize("brace", ["}", "{"])

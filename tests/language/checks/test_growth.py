@@ -5,6 +5,7 @@ from collections.abc import Callable
 
 import pytest
 
+from robosc.base.ros_types import RosTypes
 from robosc.language.checks import check
 from robosc.language.reading import read
 from robosc.language.text import Documents
@@ -95,3 +96,37 @@ def test_a_chain_of_reasons_costs_by_its_length(chain: Callable[[list[str]], str
     calls(text.format("error = lost"))  # load modules once, before counting
     short, long = (calls(text.format(chain(["error"] * number))) for number in (100, 400))
     assert long < 5 * short
+
+
+@pytest.mark.parametrize(
+    "definitions",
+    [
+        "function f0(x: integer): integer = 1 {calls} constant c: integer = f29(1)",
+        "parameter p: integer(0..9) = 1 constant c0: integer = p {sums} constant c: integer = c29",
+        "constant c0: integer = floor(0.0 / 0.0) {sums} constant c: integer = c29",
+        "constant c0: integer = c29 {sums} constant c: integer = c29",
+    ],
+    ids=["unread arguments", "no constant", "no value", "a circle"],
+)
+def test_constants_without_a_value_do_not_double(definitions: str) -> None:
+    numbers = range(1, 30)
+    calls = " ".join(f"function f{n}(x: integer): integer = f{n - 1}(f{n - 1}(x))" for n in numbers)
+    sums = " ".join(f"constant c{n}: integer = c{n - 1} + c{n - 1}" for n in numbers)
+    text = f"""robot R {{
+      {definitions.replace("{calls}", calls).replace("{sums}", sums)}
+      component C {{ outgoing message m with type: integer(0..9)
+        behaviour {{ initial marked state s {{ on response from m if value = c }} }} }}
+    }}"""
+    steps = 0
+    step = expansion.Expansion._step
+
+    def counted(*arguments: object) -> object:
+        nonlocal steps
+        steps += 1
+        return step(*arguments)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(expansion.Expansion, "_step", counted)
+        reading = read("robot.rscd", (), RosTypes(), Documents({"robot.rscd": text}))
+        check(reading.base, reading.findings, RosTypes())
+    assert steps < 100_000

@@ -84,15 +84,22 @@ TEXTS = {
     "escapes": 'robot R { component C { incoming message m with identifier: "a\\d", type: none } }',
     "quotes": "robot R { component C { incoming message m with identifier: \u201c/m\u201d, type: none } }",
     "numbers": "robot R { constant a: double = .5 constant b: double = 1e-3 constant c: double = 2. }",
+    "arrow": """robot R {
+  component C {
+    outgoing message m with type: boolean
+    behaviour { initial state i { on response from m if value -> j } marked state j {} }
+  }
+}
+""",
 }
 #: The beginnings of hints that state an edit, and such hints that no text here draws. None of the latter has an edit.
 SAYING = ("write `", "add ", "leave ", "rename ", "did you mean")
 UNSEEN = ("write `if` and `!` before the condition", "write `none`: no data type fits", "write `{}`")
 #: Beginnings of hints without an edit, by the reason: they do not state an edit.
 TOLD = {
-    "what is missing is known to the writer alone": (
+    "only the author knows the missing part": (
         "compare double with double",
-        "compare it with `value` where data comes in",
+        "compare it with `value` when data arrives",
         "declare a `constant` for the whole string",
         "declare `datatype object",
         "declare `interface",
@@ -104,18 +111,19 @@ TOLD = {
         "is a name missing before",
         "leave it out: this event carries no data",
         "leave one of these uses out",
-        "let a variable remember",
+        "store the relevant part in a variable",
         "name a type of kind",
         "narrow its range",
         "store it in a variable",
+        "store the condition in a variable",
         "the `{` in line",
         "the units are",
-        "turn it into an enum",
-        "use what both have",
+        "convert it to an enum",
+        "use only features of both",
         "write `Ahead(limit",
         "write `Bumper(topic",
         "write `gain(distance",
-        "write a message that a component sends",
+        "write a message from a component",
         "write a number, a space and a unit",
         "write a number that is in the range",
         "write a whole number or declare it double",
@@ -128,9 +136,9 @@ TOLD = {
         "write the name of an array there",
         "write its content directly",
     ),
-    "a construct is to be written anew": (
+    "a construct must be rewritten": (
         "assign it `on canceled from",
-        "give both one type",
+        "use one type for both",
         "go to a state",
         "let `",
         "choose another name, such as `why`",
@@ -142,23 +150,23 @@ TOLD = {
         "write `links` after all other clauses",
         "write `send: change` after the type",
         "a file has one robot or one library",
-        "a name is made of the letters",
+        "a name has only the letters",
         "an `after` has no condition",
         "compare an enum's values by `=` only",
         "compare integers, or give the integers smaller ranges",
-        "compute it of `value`",
+        "compute it from `value`",
         "declare it from the type that `Endless` is from",
-        "an enum's rules see only",
-        "give it a parameter for what it shall read",
-        "declare what gives the data and what takes it with one type",
+        "the rules of an enum read only",
+        "add a parameter for this value",
+        "declare the source and the target of the data",
         "give the integers smaller ranges",
         "move its states, variables and transitions",
-        "say it in a requirement",
+        "write it as a requirement",
         "write such a definition in",
-        "the automaton of a requirement has states",
-        "the condition of a transition stands before",
+        "a requirement automaton has only states",
+        "write the condition of a transition before",
         "write the properties of an object in braces",
-        "the text stands before the colon",
+        "write the text before the colon",
         "use literals, constants, operators",
         "write `=` and one expression instead of braces",
         "write `all`, `any` or `count`",
@@ -169,20 +177,20 @@ TOLD = {
         "write `mod(a, b)`",
         "write `parameter name: type = value` in the robot",
         "write `requirement at most",
+        "write it in the intended state",
         "write `requirement b after a`",
         "write `requirement name: automaton",
         "write a transition for each case",
-        "write it in the state whose time is meant",
     ),
-    "it is done in another text": (
+    "the repair is in another text": (
         "assign it in",
         "change the arguments",
-        "give the folder of its package",
+        "add the folder of its package",
         "import only one of these",
         "in library `TankLibrary`",
-        "repair it",
+        "correct it: until then",
         "restrict the reaction of the controller",
-        "write a field that it has",
+        "write an existing field",
     ),
 }
 

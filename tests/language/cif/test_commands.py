@@ -121,7 +121,7 @@ def test_transform_adds_the_supervisor_to_the_specification(tmp_path: Path) -> N
         == """@@doc("motor under its supervisor: 28 states.")
 import "motor.cif";
 
-@doc("What synthesis added.")
+@doc("Conditions by synthesis.")
 supervisor automaton sup:
   alphabet c_on, c_off, end_.end;
   initial Motor.n = 0;

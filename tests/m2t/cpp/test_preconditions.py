@@ -206,7 +206,7 @@ DOUBLES = """incoming message drive with type: double
 )
 def test_what_may_be_no_number_has_something_in_its_place(tmp_path: Path, provided: str, outside: bool) -> None:
     said = (
-        "cart.rscd:18: drive is not sent where its data is not a finite number, and no other"
+        "cart.rscd:18: drive is not sent if its data is not a finite number, and no other"
         " message is: the robot continues with its last command"
     )
     more = DOUBLES % provided
@@ -250,7 +250,7 @@ def test_what_is_handed_on_may_hold_what_is_not_finite(
     more = KEPT % (kind, provided)
     warnings = found(tmp_path, '{"onShutdown": []}', Severity.WARNING, more=more)
     end = " finite number, and no other message is: the robot continues with its last command"
-    assert warnings == ([f"cart.rscd:20: drive is not sent where its {what}{end}"] if what else [])
+    assert warnings == ([f"cart.rscd:20: drive is not sent if its {what}{end}"] if what else [])
     assert found(tmp_path, '{"onShutdown": [], "onWithheld": []}', Severity.WARNING, more=more) == []
 
 

@@ -13,7 +13,7 @@ from robosc.model.reflection import tree
 from robosc.model.semantics import expansion
 from robosc.model.semantics.evaluation import evaluate, literal
 from robosc.model.semantics.operators import UnreadableError
-from robosc.model.semantics.walks import copied
+from robosc.model.semantics.walks import copy_tree
 
 MODEL = """\
 robot Round {
@@ -127,11 +127,11 @@ def test_nested_calls_copy_an_argument_only_where_it_occurs_twice() -> None:
 
     def counted(element: ex.Expression) -> ex.Expression:
         copies.append(element)
-        return copied(element)
+        return copy_tree(element)
 
     robot = robosc.load(text=text)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(expansion, "copied", counted)
+        patch.setattr(expansion, "copy_tree", counted)
         assert expansion.constant_value(robot.definitions[-1].value) == 2049
     assert len(copies) < 10
 

@@ -121,7 +121,7 @@ def _suggestion(fault: Fault | Unknown, element: ex.Located | None) -> Hint:
     if isinstance(fault, Unknown) and fault.meant is not None and isinstance(element, rsc.Interface):
         package, name = fault.meant
         text = f"interface {escape_keyword(element.name)} use {escape_keyword(name)} from {escape_keyword(package)}"
-        return Replacement(fault.hint, text, element)
+        return Replacement(fault.hint, text, element, is_choice=True)
     return fault.hint
 
 
@@ -158,9 +158,9 @@ def _faulty(base: rsc.Base, interfaces: RosTypes) -> Iterator[tuple[ex.Located, 
 def _of_property(fault: Fault, declared: rsc.ObjectProperty) -> Hint:
     """Return the hint at the property with the edits that follow it."""
     if fault.text is not None:
-        return Replacement(fault.hint, fault.text, declared)
+        return Replacement(fault.hint, fault.text, declared, is_choice=fault.is_guess)
     if fault.new_name is not None:
-        return Renaming(fault.hint, declared, fault.new_name, is_choice=False)
+        return Renaming(fault.hint, declared, fault.new_name, is_choice=fault.is_guess)
     if fault.others is None:
         return fault.hint
     fields = [f"{escape_keyword(name)}: {kind}" for name, kind in fault.others.items()]

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class Layer(EventHandler):
-    """Layer of a robot. It decides; others forward. Of `safe` it sends `on_blocked`.
+    """Layer of a robot. It decides; others forward. It sends `on_blocked` of `safe`.
 
     Messages of the robot move the supervisor before they are forwarded (`receive`, `respond`, `fail`, `feed_back`).
     Messages of the controller are forwarded if `passes` allows it. The proxies of actions add their `goals`.

@@ -76,7 +76,7 @@ typedef enum dock_event {
     /* Light.light is to be sent without data. */
     dock_data_light_c_none,
 
-    /* ---- What comes from the robot: perform these. ---- */
+    /* ---- Data from the robot: perform these. ---- */
 
     /* Power.battery arrived (/battery).
      * It carries inputs.message_battery_i_response_percentage. */
