@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 ROOT = Path(__file__).parents[1]
 #: First words of sentences without a subject in its usual place.
 WORDS = r"(?:What|Whatever|Who|Whoever|Whom|Whose|That which|Of|So many|Nobody|Such)\b"
-#: Such a sentence: at the start of a text or a paragraph, or after another sentence. Questions are allowed.
+#: Place of a first word: the start of a text or a paragraph, or the end of a sentence. Questions are allowed.
 SENTENCE = re.compile(rf"(?:\A|\n\n|[.:?!]\s+)\s*({WORDS}[^.?!]*)(?![^.?!]*\?)(?:[.!]|\Z)")
 #: Starts of comments in files that are not Python.
 COMMENT = re.compile(rf"(?://+|#:?|/\*+|^ \*|\{{#) *({WORDS}.*)", re.MULTILINE)
@@ -69,7 +69,8 @@ def comments(text: str) -> Iterator[str]:
 
 
 def test_no_sentence_hides_its_subject() -> None:
-    wrong = [f"{path.relative_to(ROOT)}: {sentence}" for path in files() for sentence in sentences(path)]
+    others = (path for path in files() if path != Path(__file__))
+    wrong = [f"{path.relative_to(ROOT)}: {sentence}" for path in others for sentence in sentences(path)]
     assert wrong == []
 
 
