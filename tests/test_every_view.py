@@ -18,6 +18,8 @@ from tests.fuzz.valid import compared, compiled, taken_through
 if TYPE_CHECKING:
     from tests.fuzz.valid import Robot
 
+pytestmark = pytest.mark.slow
+
 FOLDER = Path(__file__).parent / "every_view"
 NAMES = ["data", "failures", "names", "requirements", "templates", "transitions"]
 EACH = pytest.mark.parametrize("name", NAMES)

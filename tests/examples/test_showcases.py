@@ -11,6 +11,8 @@ from robosc.tools.cli import main
 
 from .conftest import MODELS
 
+pytestmark = pytest.mark.slow
+
 DONE = ' {"value": {"success": true}}'
 REFUSED = ' {"value": {"success": false}}'
 FREE = ' {"value": {"ranges": [2.0, 1.5]}}'

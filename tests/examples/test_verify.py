@@ -13,6 +13,8 @@ from robosc.tools.cli import main
 
 from .conftest import MODELS, PAGES, SHOWCASES
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parents[2]
 LISTINGS = ROOT.parent / "shared" / "thesis" / "models"
 #: All listings except the one with deliberate faults.

@@ -11,6 +11,8 @@ from robosc.language.reading import read
 from robosc.language.text import Documents
 from robosc.model.semantics import expansion
 
+pytestmark = pytest.mark.slow
+
 COMPONENT = """component A {
   outgoing message m with type: integer(0..9)
   incoming message go with type: none

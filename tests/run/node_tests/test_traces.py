@@ -38,6 +38,8 @@ if TYPE_CHECKING:
     from robosc.m2t.models import TraceTest
     from robosc.model import rosgraph
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parents[3]
 CPP = ROOT / "tests" / "m2t" / "cpp"
 MODELS = {

@@ -26,6 +26,8 @@ from robosc.tools.cli import main, safety_report
 from tests.chromium import chromium  # noqa: F401  # a fixture
 from tests.examples.conftest import MODELS, PAGES, models_of
 
+pytestmark = pytest.mark.slow
+
 Told: TypeAlias = Callable[[str], dict[str, Any]]
 Planned: TypeAlias = Callable[[str, int], TraceTest]
 ROOT = Path(__file__).parents[3]

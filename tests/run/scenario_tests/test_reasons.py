@@ -11,6 +11,8 @@ from click.testing import CliRunner, Result
 
 from robosc.tools.cli import main
 
+pytestmark = pytest.mark.slow
+
 CRANE = Path(__file__).parents[2] / "run" / "simulation" / "crane.rscd"
 CALLED = '  stop with true\n  canceled from go with {"code": 3}\n'
 
