@@ -234,7 +234,7 @@ class ExpressionCheck:
                 text = f"`[{segment.index}]`" if segment.first is None else "in brackets"
                 message = f"the index {text} must follow an array, found {before}"
                 hint = f"leave {text if segment.first is None else 'it'} out"
-                self.report(segment, message, Replacement(hint, "", segment))
+                self.report(segment, message, Replacement(hint, "", segment, is_choice=True))
                 return UNKNOWN
         return types[-1]
 

@@ -76,27 +76,31 @@ def repair(expression: ex.Expression, actual: Type, expected: Type) -> Hint:
     return _conversion(expression, actual, expected)
 
 
-def literal_repair(expression: ex.Expression, actual: Type, expected: Type) -> Repair | None:
+def literal_repair(expression: ex.Expression, actual: Type, expected: Type) -> Repair | Replacement | None:
     """Return the equivalent literal of the wanted type as a repair; None if there is none."""
     inner = expression.operand if isinstance(expression, ex.UnaryMinus) else expression
     sign = "" if inner is expression else "-"
-    text = None
+    text = offer = None
     match inner, expected:
         case ex.IntegerLiteral(), BasicType.DOUBLE:
             text = f"{sign}{inner.value}.0"
         case ex.DoubleLiteral(), BasicType.INTEGER if inner.value.is_integer():
             text = f"{sign}{int(inner.value)}"
         case ex.IntegerLiteral() | ex.DoubleLiteral(), BasicType.STRING:
-            text = f'"{sign}{inner.value}"'
+            offer = f'"{sign}{inner.value}"'  # the number may have been spelled otherwise, such as `1.10`
         case ex.BooleanLiteral(), BasicType.STRING:
             text = f'"{str(inner.value).lower()}"'
         case ex.IntegerLiteral(), BasicType.BOOLEAN if not sign and inner.value in {0, 1}:
-            text = str(bool(inner.value)).lower()
+            offer = str(bool(inner.value)).lower()  # `x = 0 or 1` means another comparison
         case ex.StringLiteral(), BasicType.BOOLEAN if inner.value in {"true", "false"}:
             text = inner.value
         case ex.StringLiteral(), EnumType() if inner.value in _values(expected):
             text = escape_keyword(inner.value)
-    return Repair(f"write `{text}`", text) if text is not None and actual != expected else None
+    if actual == expected:
+        return None
+    if offer is not None:
+        return Replacement(f"write `{offer}`", offer, expression, is_choice=True)
+    return Repair(f"write `{text}`", text) if text is not None else None
 
 
 def equality_repair(operator: ex.Equation | ex.Inequation, left: Type, right: Type) -> tuple[ex.Expression, Hint]:

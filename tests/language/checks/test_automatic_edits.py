@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robosc.base.diagnostics import Diagnostic, Edit
+from robosc.base.diagnostics import Diagnostic, Edit, Severity
 from robosc.language.checks import check
 from robosc.language.checks.automatic_edits import Safety, objection, safe_edits, safety_of
 from robosc.language.reading import Reading, read
@@ -416,3 +416,28 @@ def test_no_guess_at_names_of_a_library_that_is_missing() -> None:
     }"""
     assert fixed(text) == text
     assert [finding.message for finding in checked(text).findings] == ["there is no library `Nowhere`"]
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "requirement go needs Gate.mode = 0 or 1",
+        "datatype enum Door from integer to { 0 -> closed 1 -> open default -> unknown }",
+        "assert Gate.locked",
+        "constant version: string = 1.10",
+        'datatype enum Order from string to { value[0] = "S" -> stop default -> drive }',
+        "component Clock { behaviour { initial marked state s { every 3.0 s do t := 1 } variable t: integer(0..1) } }",
+    ],
+)
+def test_an_edit_that_may_change_the_meaning_is_offered(line: str) -> None:
+    content = f"""robot Gate {{
+  component Gate {{
+    incoming message go with type: none
+    outgoing message set with type: integer(0..5)
+    behaviour {{ variable mode: integer(0..5) initial marked state locked {{ on response from set do mode := value }} }}
+  }}
+  {line}
+}}
+"""
+    assert any(finding.severity is Severity.ERROR for finding in checked(content).findings)
+    assert fixed(content) == content

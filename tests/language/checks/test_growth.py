@@ -132,3 +132,23 @@ def test_constants_without_a_value_do_not_double(definitions: str) -> None:
         reading = read("robot.rscd", (), RosTypes(), Documents({"robot.rscd": text}))
         check(reading.base, reading.findings, RosTypes())
     assert steps < 100_000
+
+
+@pytest.mark.parametrize(
+    "place",
+    [
+        "variable i: integer(0..5) = {0} initial marked state s {{}}",
+        "variable i: integer(0..{0}) initial marked state s {{}}",
+        "initial marked state s {{ after {0} s goto s }}",
+    ],
+)
+def test_no_place_loses_a_value_that_is_too_large(place: str) -> None:
+    """Each call triples its argument; the value of the calls is small."""
+    calls = "same(" * 10 + "2" + ")" * 10
+    text = f"""robot R {{
+      function same(x: integer): integer = x + x - x
+      component C {{ incoming message m with type: none behaviour {{ {place.format(calls)} }} }}
+    }}"""
+    reading = read("robot.rscd", (), RosTypes(), Documents({"robot.rscd": text}))
+    found = check(reading.base, reading.findings, RosTypes())
+    assert [finding.rule for finding in found] == ["cyclic-definition"]

@@ -177,6 +177,8 @@ TOLD = {
         "write `mod(a, b)`",
         "write `parameter name: type = value` in the robot",
         "write `requirement at most",
+        "write `after 3.0 s goto state`",
+        "write `requirement never condition`",
         "write it in the intended state",
         "write `requirement b after a`",
         "write `requirement name: automaton",

@@ -65,9 +65,11 @@ def _used(definition: rsc.NamedExpression) -> list[Any]:
 def _too_large(base: rsc.Base) -> Iterator[Finding]:
     for _ in conditions(instances(base)):
         pass
-    for constant in statements(rsc.Constant, base):
-        if constant.value is not None:
-            instances(base).expanded.is_too_large(constant.value)
+    for _, part in tree(base):
+        # A function or condition is reported where it is used.
+        within = part.eContainer()
+        if isinstance(part, ex.Expression) and not isinstance(within, ex.Expression | rsc.Function | rsc.Condition):
+            instances(base).expanded.is_too_large(part)
     for expression in instances(base).expanded.too_large:
         yield Finding(
             expression,
