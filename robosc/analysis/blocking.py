@@ -103,7 +103,7 @@ def _blocked_from_the_start(system: SynthesizedSystem) -> BlockReason:
 def _described(
     system: SynthesizedSystem, unmarked: Sequence[sct.Plant], steps: Sequence[TraceStep], codes: Codes
 ) -> BlockReason:
-    """Return a reason without its event, with the state by name."""
+    """Return a reason that has the state by name and no event."""
     state: dict[str, Value] = {}
     for plant in system.model.plants:
         if len(plant.locations) > 1:

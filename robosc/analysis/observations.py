@@ -121,7 +121,10 @@ class Example:
 
 @dataclass(frozen=True)
 class ProvideGap:
-    """Trigger that is allowed in a state in which none of its data conditions, in the plant `data`, holds."""
+    """Trigger that is allowed in a state in which no condition of its data holds.
+
+    `data` is the plant with these conditions. `example` is such a state.
+    """
 
     event: sct.Event
     data: sct.Plant

@@ -30,7 +30,7 @@ _Step = Callable[[Sequence[int], Sequence[int], list[int]], None]
 
 
 class Engine:
-    """A model with its current state, at first its initial one.
+    """A model with its current state. An engine starts in the initial state.
 
     Event names include their plant (`message_move.c_trigger`). An event happens only if its guard is true: each of its
     plants has an enabled edge for it in its location, and the supervisor allows it. All changes are simultaneous and

@@ -69,7 +69,10 @@ def outline(file: File) -> list[Item]:
 
 
 def folds(file: File) -> list[tuple[int, int]]:
-    """Return the foldable ranges of a text (offsets): definitions of several lines, each up to its last brace."""
+    """Return the foldable ranges of a text, as offsets.
+
+    Each range is a definition of several lines, up to its last brace.
+    """
     return [span(file, element) for element in own_elements(file) if isinstance(element, _FOLDED)]
 
 

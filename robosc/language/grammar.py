@@ -24,7 +24,7 @@ _FAILURES = 100
 
 @dataclass(frozen=True)
 class Failure:
-    """Position of a syntax error, and the words of the language or rules that the grammar expects there."""
+    """Position of a syntax error, and the words or rules that the grammar expects there."""
 
     position: int
     expected: tuple[str, ...]

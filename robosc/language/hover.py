@@ -57,7 +57,7 @@ def describe(reading: Reading, element: Any, ros_types: RosTypes) -> str | None:
 
 
 def summary(element: Any) -> str:
-    """Return a few words for an element: its type if it has one, else its kind."""
+    """Return a short description of an element: its type if it has one, else its kind."""
     declared = getattr(element, "type", None)
     if isinstance(declared, rsc.DataType) and not isinstance(element, rsc.EnumDataType):
         return type_text(declared)

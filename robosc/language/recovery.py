@@ -217,7 +217,10 @@ class _Recovery:
     # The model
 
     def _base(self, root: Block, builder: Builder) -> rsc.Base | None:
-        """Return the model of the remaining text, or of its definitions alone if the first line is unreadable."""
+        """Return the model of the remaining text.
+
+        If the first line is unreadable, return the model of the definitions alone.
+        """
         failure = self._failure(root)
         if failure is None:
             return self._built("".join(self._content[: root.end]), 0, builder)

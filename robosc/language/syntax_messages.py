@@ -244,7 +244,7 @@ def misread(tokens: Tokens, index: int, expectations: Collection[str]) -> int:
 def _foreign(tokens: Tokens, index: int) -> Repair:
     """Return the hint for a symbol of another language.
 
-    A quotation mark is replaced together with its counterpart.
+    The hint replaces a quotation mark together with its counterpart.
     """
     own = _FOREIGN[tokens[index].text]
     hint_text = f"write `{own}`" if own else "leave it out: RoboSC has no semicolons"

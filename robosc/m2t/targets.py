@@ -82,9 +82,10 @@ class Target:
         return self.package is not None
 
     def folder(self, models: Models, configuration: Configuration) -> str:
-        """Return the folder of its files below the output folder: POSIX path, empty for the output folder itself.
+        """Return the folder of the target's files below the output folder, as a POSIX path.
 
-        ROS packages of several robots share one folder, which can be a workspace's `src`.
+        The path is empty for the output folder itself. ROS packages of several robots share one folder, which can be a
+        workspace's `src`.
         """
         if self.package is None:
             return self._folder

@@ -62,8 +62,8 @@ class Place:
 def place(element: Any) -> tuple[str, Span]:
     """Return the file, as the user would write it, and the span of an element.
 
-    An element without a `source` has the place of its nearest container with one. Without any, the file is that of the
-    root, or its name, and the span is the first character.
+    An element without a `source` has the place of its nearest container with one. If there is none, the file is that of
+    the root, or the name of the root, and the span is the first character.
     """
     nearest: Place | None = None
     root = around = element

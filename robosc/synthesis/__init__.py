@@ -93,7 +93,7 @@ class Synthesis:
 
 @dataclass(frozen=True)
 class Counts:
-    """State counts as in `Synthesis`, and the node count of the diagram of the controlled states."""
+    """State counts as in `Synthesis`, and the node count of the controlled states' diagram."""
 
     uncontrolled_states: int | None
     controlled_states: int

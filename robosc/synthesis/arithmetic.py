@@ -36,7 +36,7 @@ def choose(condition: Diagram, then: Vector, otherwise: Vector) -> Vector:
 
 
 def add(left: Vector, right: Vector) -> Vector:
-    """Return the sum."""
+    """Return the sum of two vectors."""
     return _sum(left, right, _false(left))
 
 

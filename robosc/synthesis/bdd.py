@@ -113,7 +113,7 @@ class Diagrams:
 
 
 def and_exists(left: Diagram, right: Diagram, cube: Diagram) -> Diagram:
-    """Return the conjunction, with the variables of `cube` quantified existentially, in one pass."""
+    """Return the conjunction with the variables of `cube` quantified existentially, in one pass."""
     return left.apply_exists(_AND, right, cube)
 
 

@@ -25,9 +25,9 @@ class Permission:
     """Controlled states in which a controllable event is allowed, and its guard.
 
     A controlled state allows the event exactly if it is in `where`; `where` may contain other states, too. If `where`
-    is satisfiable, some controlled state allows the event; the same is true of `where` with a condition on the elements
-    that the event touches. If `unwritten`, the guard exceeds the effort limit and lacks the condition that synthesis
-    added.
+    is satisfiable, some controlled state allows the event. The same is true of a conjunction of `where` and a condition
+    on the elements that the event touches. If `unwritten`, the guard exceeds the effort limit and lacks the condition
+    that synthesis added.
     """
 
     relation: EventRelation

@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class SymbolicStep:
-    """All moves of an event under a condition. Its inputs are quantified: each of their values may occur.
+    """All moves of an event under a condition.
 
-    `relation` is over present and next values. `present` and `following` are the variables of the changed elements.
-    `same` states that these are equal: renaming by conjunction, unlike substitution, does not touch the diagram below.
-    `changed` are the changed elements. `touched` are these and the elements that the plants read; it is only filled in
-    if some integer is wide.
+    The inputs of the event are quantified: each of their values may occur. `relation` is over present and next values.
+    `present` and `following` are the variables of the changed elements. `same` states that these are equal: renaming by
+    conjunction, unlike substitution, does not touch the diagram below. `changed` are the changed elements. `touched`
+    are these and the elements that the plants read. It is empty unless some integer is wide.
     """
 
     level: int

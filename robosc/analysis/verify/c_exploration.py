@@ -150,7 +150,7 @@ class _Nodes:
         self._numbers = {diagrams.false: 0, diagrams.true: 1}
 
     def number(self, diagram: Diagram) -> int:
-        """Return the number of a diagram's root."""
+        """Add the nodes of a diagram; return the number of its root."""
         pending = [diagram]
         while pending:
             top = pending[-1]

@@ -114,7 +114,7 @@ class _SearchNode:
 
 
 def _explored(lockstep: Lockstep, operations: int) -> _Seen:
-    """Explore all states breadth first, with an equal share of the operations for each of the settings."""
+    """Explore all states breadth first. Each setting gets an equal share of the operations."""
     seen = _Seen()
     for part, settings in enumerate(_EXPLORED, 1):
         lockstep.begin(settings)

@@ -49,7 +49,7 @@ _NEVER_QUIESCENT = "the control loop never again rests in a state in which all c
 
 
 def properties(system: GuardedSystem) -> list[Callable[[], Verdict]]:
-    """Return all properties that a model with its supervisor must satisfy, including one for each requirement.
+    """Return all properties of a supervised system, including one for each requirement.
 
     A model from CIF has no control loop, and its plants may refuse events.
     """

@@ -75,7 +75,7 @@ def communications(base: Text) -> Iterator[rsc.CommunicationType]:
 
 
 def identified_elements(base: rsc.Base) -> Iterator[rsc.CommunicationType | rsc.TopicRemapping]:
-    """Yield the declarations and re-mappings that name a topic, a service or an action."""
+    """Yield the declarations and remappings that name a topic, a service or an action."""
     yield from communications(base)
     for component in of_kind(rsc.Component, base.definitions):
         if isinstance(component.type, rsc.ImportedComponent):

@@ -137,7 +137,10 @@ class ExpressionReader:
         top.word = "switch:" if top.word == "switch" else word
 
     def _reduce(self, level: int) -> None:
-        """Complete the operators that bind at least as tightly as `level`, up to the innermost open construct."""
+        """Complete the operators that bind at least as tightly as `level`.
+
+        Stop at the innermost open construct.
+        """
         while self._open:
             top = self._open[-1]
             if top.word in _UNARY:

@@ -38,8 +38,8 @@ _LISTS = {
 class Declaration:
     """A named element; `kind` is the grammar rule of its declaration.
 
-    `node` is its own object of the grammar, and `outer` that of the statement with its type. `element` is the element
-    of the sct metamodel that was created for it.
+    `node` is its own object of the grammar. `outer` is the object of the statement that has its type. `element` is the
+    element of the sct metamodel that was created for it.
     """
 
     kind: str

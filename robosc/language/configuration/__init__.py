@@ -324,7 +324,7 @@ def read(file: Path) -> Configuration:
 
 
 def schema() -> str:
-    """Return the JSON Schema of the file, as in `robosc/schemas`."""
+    """Return the JSON Schema of the configuration file, as in `robosc/schemas`."""
     document = {"$schema": "https://json-schema.org/draft/2020-12/schema", **Configuration.model_json_schema()}
     return json.dumps(document, indent=2) + "\n"
 

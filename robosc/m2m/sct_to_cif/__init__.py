@@ -135,7 +135,7 @@ class _SctToCif:
         return lowered
 
     def _number_locations(self, plant: sct.Plant, lowered: sct.Plant) -> None:
-        """Replace the locations of a plant by one location without a name and a variable that holds a number."""
+        """Replace the locations of a plant by one unnamed location and a variable with a number."""
         start = next(number for number, location in enumerate(plant.locations) if location.initial)
         variable = sct.DiscreteVariable(
             name="choice",

@@ -139,7 +139,10 @@ def _width(number: Term) -> Width:
 
 
 def _working(term: Term) -> Width:
-    """Return the width in which an operator computes: a signed integer that holds its operands and its result."""
+    """Return the width in which an operator computes.
+
+    It is that of a signed integer that holds the operands and the result.
+    """
     values = [operand.values for operand in term.operands if operand.sort is int]
     values += [term.values] if term.sort is int else []
     union = values[0]

@@ -57,10 +57,10 @@ class Lowering:
         locations: Collection[sct.Location | None],
         possible: Sequence[sct.Location | None] | None = None,
     ) -> Term:
-        """Return the condition that a plant is in one of the locations, given that it is in a possible one.
+        """Return the condition that a plant is in one of the locations, in its shorter form.
 
-        Chooses the shorter form. `locations` is a subset of `possible`, without duplicates. None: all locations are
-        possible.
+        The plant must be in one of the `possible` locations; None stands for all locations. `locations` is a subset of
+        `possible`, without duplicates.
         """
         possible = plant.locations if possible is None else possible
         holds = 2 * len(locations) <= len(possible)

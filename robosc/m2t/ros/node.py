@@ -595,5 +595,5 @@ class GeneratedNode:
 
 
 def _may_be_infinite(field: rosgraph.FieldAssignment) -> bool:
-    """Return whether a field may hold a double, which may not be finite."""
+    """Return whether a field may hold a double, and so a value that is not finite."""
     return holds_objects(field.type) or infer(field.value) in {DOUBLE, ArrayType(DOUBLE)}

@@ -133,7 +133,10 @@ def inputs_in(
 
 
 def readable(carried: ComputedValue) -> ComputedValue:
-    """Return the input that is true if all array elements for a value exist: a value is equal to itself."""
+    """Return the input that is true if all array elements for a value exist.
+
+    Its expression compares the value with itself.
+    """
     same = ex.Equation(left=copy_tree(carried.expression), right=copy_tree(carried.expression))
     return ComputedValue(carried.port, carried.event, RoboscPrinter()(same), None, same, BOOLEAN)
 

@@ -130,7 +130,10 @@ class Roles:
 
     @cached_property
     def batches(self) -> tuple[tuple[sct.Event, ...], ...]:
-        """Groups of two or more events of one message from the robot. They happen with no other event in between."""
+        """Groups of two or more events of one message from the robot.
+
+        No other event happens between the events of a group.
+        """
         kind = sct.PlantKind.message
         return tuple(events for events in self.sources if len(events) > 1 and plant_of(events[0]).kind == kind)
 

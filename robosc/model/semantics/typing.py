@@ -139,7 +139,7 @@ def event_data_type(communication: rsc.CommunicationType | None, result_type: rs
 def provided_data_type(communication: rsc.CommunicationType | None) -> Type:
     """Return the type of the data that a communication sends: of a message or a request.
 
-    UNKNOWN if it sends nothing (the component itself sends an outgoing message, rule `data-provisioning`) or is
+    Return UNKNOWN if it sends nothing (the component itself sends an outgoing message, rule `data-provisioning`) or is
     unresolved.
     """
     return declared_type(sent_type(communication))

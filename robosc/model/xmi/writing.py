@@ -81,7 +81,10 @@ class _Document:
         return self._with_namespaces(lines, package, root)
 
     def _features(self, element: Any) -> tuple[list[tuple[str, str]], list[tuple[str, Any]]]:
-        """Return the XML attributes and the children. A child is a tag and its model element, or a line and None."""
+        """Return the XML attributes and the children.
+
+        A child is a tag and its model element, or a line and None.
+        """
         attributes: list[tuple[str, str]] = self._type(element, element.eContainmentFeature())
         children: list[tuple[str, Any]] = []
         for name, feature in features(element.eClass).items():

@@ -142,9 +142,9 @@ class Coverage:
         return self._count(goal for goal in self.goals if isinstance(goal.of, sct.Edge) and goal.value)
 
     def guards(self, *, value: bool) -> tuple[int, int]:
-        """Return the number of guards that were true, or false, and of all that may be.
+        """Return the number of guards that had this value, and of all that can have it.
 
-        Conditions of transitions count only if false.
+        Conditions of transitions count only if the value is false.
         """
         return self._count(
             goal for goal in self.goals if goal.value == value and (isinstance(goal.of, sct.Event) or not value)

@@ -296,7 +296,7 @@ class Plan:
         return event in dict(stimulus.events)
 
     def _shortened(self, start: Place, tour: list[TourStep], goals: int, detour: int) -> list[TourStep]:
-        """Remove detours from the tour: leave out a part, or take a shorter path, if no goal is lost."""
+        """Remove detours from the tour: leave out a part or take a shorter path if no goal is lost."""
         improved = True
         while improved:
             improved = False

@@ -89,7 +89,10 @@ class Project:
         return path
 
     def change(self, uri: str, version: int | None, changes: Iterable[tuple[Range | None, str]]) -> None:
-        """Replace ranges of an open text, in UTF-16 positions, one after the other; None means the whole text."""
+        """Replace ranges of an open text, one after the other.
+
+        The positions are in UTF-16. None means the whole text.
+        """
         document = self._documents.get(self.path(uri))
         if document is None:
             return

@@ -98,7 +98,10 @@ class _Protocol(LanguageServerProtocol):
         return (yield from super().lsp_initialize(params))
 
     def _execute_handler(self, msg_id: Any, handler: Any, callback: Any, *rest: Any, **options: Any) -> None:
-        """Drop futures when they are done: pygls 2.1 keeps the future of each notification as long as it runs."""
+        """Drop futures when they are done.
+
+        pygls 2.1 keeps the future of each notification as long as the server runs.
+        """
 
         def done(future: Any) -> None:
             self._request_futures.pop(msg_id, None)

@@ -197,8 +197,8 @@ class Slices:
 class Slice:
     """A text in which only some definitions are not blank (`content`).
 
-    `before` is the old range of the changed definition, `grown` its growth in code points, `users` the old ranges of
-    those that name it.
+    `before` is the old range of the changed definition, and `grown` is its growth in code points. `users` are the old
+    ranges of the definitions that name it.
     """
 
     slices: Slices

@@ -33,7 +33,7 @@ _MEMORY = 1 << 30
 
 
 def verdict(request: Request) -> Verdict:
-    """Synthesize the supervisor of a robot without errors."""
+    """Synthesize the supervisor of a robot that has no errors; return the verdict."""
     texts: dict[str | os.PathLike[str], str] = {Path(path): text for path, text in request.texts.items()}
     model = robosc.to_sct(robosc.load(request.path, request.libraries, request.interfaces, documents=texts))
     try:

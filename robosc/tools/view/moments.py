@@ -100,7 +100,10 @@ class Moments:
         edges: Iterable[sct.Edge],
         stored: Values,
     ) -> None:
-        """Add a moment with the present state of the engine; `running` has the milliseconds left of timers."""
+        """Add a moment with the present state of the engine.
+
+        `running` has the milliseconds left of timers.
+        """
         moment: dict[str, Any] = {"time": time, **entries}
         if "event" in entries:
             moment["transitions"] = [list(self._numbers[edge]) for edge in edges if edge in self._numbers]

@@ -348,7 +348,7 @@ class Lockstep:
         return DifferenceError(f"{message}{where(slots)}{data}", self._way(way))
 
     def _way(self, way: int | Sequence[TraceStep]) -> list[TraceStep]:
-        """Return the shortest sequence of events that leads to a state."""
+        """Return `way` as a list of steps: for a state, the shortest trace to it."""
         if not isinstance(way, int):
             return list(way)
         steps: list[TraceStep] = []

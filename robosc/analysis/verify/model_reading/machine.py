@@ -101,7 +101,8 @@ class Restriction(NamedTuple):
 class Length(NamedTuple):
     """Length of a timer in milliseconds.
 
-    A parameter of the robot may set it: its name, the milliseconds of one unit, the least and the greatest length.
+    If a parameter of the robot sets it, `parameter` is its name and `unit` the milliseconds of one unit. `shortest` and
+    `longest` are then the limits of the length.
     """
 
     milliseconds: int

@@ -139,7 +139,7 @@ class Names:
         return evaluate(self.written_out(expression, place), self._meanings.__getitem__)
 
     def parameter(self, expression: ex.Expression, place: Environment) -> str | None:
-        """Return the ROS name of the parameter that an expression consists of; None if it is no parameter."""
+        """Return the ROS name if the expression is a parameter, else None."""
         if not isinstance(expression, robosc.Access) or not isinstance(expression.item, robosc.Parameter):
             return None
         owner = f"{self._instance_of(expression.component, place).name}." if _is_member(expression.item) else ""

@@ -303,7 +303,10 @@ def _is_unbounded(declared: rsc.DataType | None) -> bool:
 
 
 def _has_wrong_bounds(declared: rsc.DataType | None) -> bool:
-    """Return whether a range of an instance has unknown bounds; their own expressions have the finding."""
+    """Return whether the bounds of an instance's range are unknown.
+
+    The finding is then about the expressions of the bounds.
+    """
     return declared is not None and _is_unbounded(declared) and declared.eContainer() is None
 
 

@@ -34,7 +34,7 @@ def topic_types(base: rsc.Base) -> Iterator[Finding]:
 
 @rule("shared-server")
 def shared_server(base: rsc.Base) -> Iterator[Finding]:
-    """All services of one name have one ROS type, and all actions of one name have one."""
+    """All services with one name have one ROS type, and so do all actions with one name."""
     for kind in (rsc.Service, rsc.Action):
         for first, second in _of_other_types(base, kind):
             yield Finding(

@@ -40,7 +40,10 @@ class _UnknownError(Exception):
 
 @rule("unknown-end", Severity.WARNING)
 def unknown_end(base: rsc.Base) -> Iterator[Finding]:
-    """No requirement on another command treats an error as an end if the call or goal may still be running."""
+    """No requirement on another command treats an error as an end too early.
+
+    After the error, the call or goal may still be running.
+    """
     if not isinstance(base, rsc.Robot):
         return
     known = instances(base)

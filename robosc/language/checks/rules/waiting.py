@@ -313,7 +313,7 @@ def _is_on(transition: rsc.Transition, kind: rsc.ResultType) -> TypeGuard[rsc.Re
 
 
 def _names(transition: rsc.Transition, reference: rsc.CommunicationReference) -> bool:
-    """Return whether a transition names the same communication of the same component as a reference."""
+    """Return whether a transition names the communication and component of a reference."""
     named = transition.communicationType if isinstance(transition, rsc.ResultTransition) else None
     if named is None:
         return False

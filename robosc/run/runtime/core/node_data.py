@@ -79,9 +79,9 @@ def fit(number: int) -> int:
 
 
 class NodeData:
-    """Variables of one node, and values of expressions over them, the supervisor's state and incoming data.
+    """Variables of one node, and values of expressions.
 
-    An enumeration's value is its literal.
+    An expression reads the variables, the supervisor's state and incoming data. An enumeration's value is its literal.
     """
 
     def __init__(self, graph: rosgraph.RosGraph, engine: Engine) -> None:
@@ -319,7 +319,10 @@ def _fill_array(owner: Message, kind: str, values: Sequence[Value], path: Sequen
 
 
 def _array(kind: str) -> tuple[str, int | None]:
-    """Return the type of the elements, and the length if it is fixed; ROS 2 also has `sequence<double, 9>`."""
+    """Return the element type of an array type, and the length if it is fixed.
+
+    ROS 2 also has types such as `sequence<double, 9>`.
+    """
     bounds = re.fullmatch(r"(?:sequence<)?(\w+(?:<\d+>)?)(?:\[(\d*)\]|(?:, *\d+)?>)", kind)
     assert bounds is not None
     return bounds[1], int(bounds[2]) if bounds[2] else None

@@ -78,7 +78,10 @@ class Goal(Protocol):
     """Goal that was sent."""
 
     def cancel(self) -> None:
-        """Request that the server cancel it; a server that does not know it yet may ignore the request."""
+        """Request that the server cancel the goal.
+
+        A server that does not know the goal yet may ignore the request.
+        """
 
     def is_canceling(self) -> bool:
         """Return whether the server reports that the goal is being canceled."""
@@ -131,7 +134,10 @@ class Port(Protocol):
         """Return data with every field at its ROS default."""
 
     def unset(self, interface: rosgraph.Interface, section: Section, path: Sequence[str]) -> Message:
-        """Return the object at a path in such data, as `create` makes it; a step `0` is an element of an array."""
+        """Return the object at a path in such data, as `create` makes it.
+
+        A step `0` is an element of an array.
+        """
 
     def is_served(self, client: Client) -> bool:
         """Return whether there is a server."""
