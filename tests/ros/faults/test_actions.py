@@ -126,7 +126,7 @@ def test_cancel_refused(scout: Scout, server: Peer) -> None:
         heard = len(server.said)
         server.wait("cancel", heard, value=number)
         scout.until_diagnosed("Navigator", "stopping; /travel: the server refuses to cancel the goal")
-    assert scout.state("Navigator") == "stopping"
+    scout.until_state("Navigator", "stopping")
     server.do("end", number=number, how="succeeded")
     scout.until_event(since, RESPONSE)
     assert scout.events(since, ERROR) == scout.events(since, CANCELED) == []

@@ -297,7 +297,7 @@ def test_a_trace_of_another_robot_is_refused(case: Case) -> None:
 @pytest.mark.parametrize("case", ["maze_solver"], indirect=True)
 def test_half_a_message_is_refused(case: Case) -> None:
     del case.trace[next(n for n, line in enumerate(case.trace) if line["event"] == "message_scan_right.u_response")]
-    with pytest.raises(TraceError, match=r"one message makes message_scan_front.u_response, message_scan_right"):
+    with pytest.raises(TraceError, match=r"one message causes message_scan_front.u_response, message_scan_right"):
         case.play()
 
 

@@ -487,7 +487,7 @@ async def test_quick_fix_over_the_protocol(client: Editor, folder: Path) -> None
     (action,) = await client.text_document_code_action_async(
         _about(uri, types.CodeActionParams, range=finding.range, context=context)
     )
-    assert (action.title, action.kind) == ("did you mean `open`?", types.CodeActionKind.QuickFix)
+    assert (action.title, action.kind) == ("write `open`", types.CodeActionKind.QuickFix)
     (edit,) = action.edit.changes[uri]
     replace(client, uri, 2, (edit.range, edit.new_text))
     assert await findings(client, uri, 2) == []
