@@ -303,7 +303,10 @@ class Linker:
             self._ambiguous(what, name, [file for file, _ in definitions])
         elif not definitions and not self._file.may_declare(name.text, declared):
             basic = BASIC_TYPES.get(name.text)
-            hint = Repair(f"write `{basic}`", basic) if basic else None
+            is_sized = name.text[-1].isdigit()  # the type in ROS may differ
+            hint = (
+                Repair(f"write `{basic}`", None if is_sized else basic, (basic,) if is_sized else ()) if basic else None
+            )
             self._missing(name, f"there is no {what}", self.scope.usable(kind), hint)
         return definitions[0][1] if len(definitions) == 1 else None
 
@@ -608,7 +611,7 @@ class Linker:
         else:
             repair = did_you_mean(word.text, [RUNNING_WORD], cutoff=0.6)
             message = f"only `{RUNNING_WORD}` of `{name.text}` can be read, not `{word.text}`"
-            self._report(word, message, repair or Repair(f"write `{RUNNING_WORD}`", RUNNING_WORD))
+            self._report(word, message, repair or Repair(f"write `{RUNNING_WORD}`", choices=(RUNNING_WORD,)))
         return True
 
     def _misspelled(self, component: rsc.Component, name: Name) -> bool:
@@ -724,7 +727,7 @@ class Linker:
             if name.text in (members(component) or {})
         ]
         if len(having) == 1:
-            return Repair(f"write `{having[0]}`", having[0])
+            return Repair(f"write `{having[0]}`", choices=(having[0],))
         if not having:
             return None
         hint, texts = _first_few(having)

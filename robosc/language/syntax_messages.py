@@ -186,7 +186,8 @@ def hint(tokens: Tokens, index: int, expectations: Sequence[str], block: Block) 
     if "then" in expectations:
         return _CHOICE
     if before.is_keyword(",") and token.kind is Kind.SYMBOL:
-        return Repair("leave out the comma before it", elsewhere=((before.start, before.end, ""),))
+        is_last = token.text in {")", "]", "}"}  # elsewhere, a value may be missing
+        return Repair("leave out the comma before it", elsewhere=((before.start, before.end, ""),) if is_last else ())
     if "->" in expectations and block.level is RULES and (token.is_first or before.text == "default"):
         return _value_hint(token, has_value=index < block.after and not token.is_keyword("}"))
     if token.text in {"=", ":", ":=", "=>", "->"} and len(symbols) == 1:
@@ -350,7 +351,9 @@ def _requirement_hint(token: Token, before: Token, expectations: Sequence[str]) 
     if before.kind is Kind.STRING:
         return 'write the text before the colon: `requirement name "text": …`'
     if "needs" in expectations and token.text in {"when", "if", "requires", "while"}:
-        return Repair("write `needs`", "needs")
+        # `stop when` can mean that the robot must stop then.
+        is_certain = token.text == "requires"
+        return Repair("write `needs`", "needs" if is_certain else None, () if is_certain else ("needs",))
     if before.text == "every":
         return _ORDER
     if token.text in {"on", "transition", "after", "do", "variable"}:

@@ -41,7 +41,6 @@ def unknown_events(base: rsc.Base) -> Iterator[Finding]:
                 Removal(
                     f"write `{escape_keyword(communication.name)}` alone",
                     part_of(named).until(part_of(named.communicationType)),
-                    is_choice=False,
                 ),
             )
 

@@ -84,7 +84,7 @@ def literal_repair(expression: ex.Expression, actual: Type, expected: Type) -> R
     match inner, expected:
         case ex.IntegerLiteral(), BasicType.DOUBLE:
             text = f"{sign}{inner.value}.0"
-        case ex.DoubleLiteral(), BasicType.INTEGER if inner.value.is_integer():
+        case ex.DoubleLiteral(), BasicType.INTEGER if inner.value.is_integer() and abs(inner.value) < 2**53:
             text = f"{sign}{int(inner.value)}"
         case ex.IntegerLiteral() | ex.DoubleLiteral(), BasicType.STRING:
             offer = f'"{sign}{inner.value}"'  # the number may have been spelled otherwise, such as `1.10`
@@ -95,7 +95,7 @@ def literal_repair(expression: ex.Expression, actual: Type, expected: Type) -> R
         case ex.StringLiteral(), BasicType.BOOLEAN if inner.value in {"true", "false"}:
             text = inner.value
         case ex.StringLiteral(), EnumType() if inner.value in _values(expected):
-            text = escape_keyword(inner.value)
+            offer = escape_keyword(inner.value)  # a variable may have the same name
     if actual == expected:
         return None
     if offer is not None:

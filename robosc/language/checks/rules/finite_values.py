@@ -77,7 +77,6 @@ def variable_type(base: rsc.Base) -> Iterator[Finding]:
                 hint = Removal(
                     f"write `variable {variable.name}: …` without `=`",
                     part_of(variable.initial).preceded_by("="),
-                    is_choice=False,
                 )
                 yield Finding(variable.initial, message, hint)
             if _has_objects(value_type) and variable not in stored:
@@ -179,7 +178,7 @@ def integer_range(base: rsc.Base) -> Iterator[Finding]:
                 yield meaning.finding(
                     declared,
                     f"the range {low}..{high} is empty, expected the lower bound first",
-                    Replacement(f"write `integer({high}..{low})`", f"integer({high}..{low})", declared),
+                    Replacement(f"write `integer({high}..{low})`", f"integer({high}..{low})", declared, is_choice=True),
                 )
         for count in statements(rsc.CountRequirement, meaning):
             (most,) = meaning.values(count.bound)
@@ -214,7 +213,9 @@ def _parameters(meaning: Meaning) -> Iterator[Finding]:
                     Replacement("", f"{high}", lowest),
                     Replacement("", f"{low}", highest),
                 )
-                yield meaning.finding(lowest, message, Together(f"write `double({high}..{low})`", swapped))
+                yield meaning.finding(
+                    lowest, message, Together(f"write `double({high}..{low})`", swapped, is_choice=True)
+                )
             elif isinstance(value, float) and parameter.value is not None and not low <= value <= high:
                 message = f"{value} is not in the range {low}..{high} of `{parameter.name}`, expected a value in it"
                 nearest = low if value < low else high

@@ -48,7 +48,7 @@ def data_provisioning(base: rsc.Base) -> Iterator[Finding]:
             yield Finding(
                 statement.data or statement,
                 f"data is provided to `{communication.name}`, expected none: {what} is declared with the type `none`",
-                Removal("leave the provide statement out: it has no data to send", statement, is_choice=False),
+                Removal("leave the provide statement out: it has no data to send", statement),
             )
 
 
