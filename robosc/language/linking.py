@@ -92,6 +92,18 @@ def _by_cause(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
     return list(by_cause.values())
 
 
+def _basic_type(name: str) -> Repair | None:
+    """Return the repair that writes the basic type for a type of another language; None if there is none.
+
+    A type with a size, such as `uint8`, is only offered: it states the type in ROS, which may differ.
+    """
+    basic = BASIC_TYPES.get(name)
+    if basic is None:
+        return None
+    hint = f"write `{basic}`"
+    return Repair(hint, choices=(basic,)) if name[-1].isdigit() else Repair(hint, basic)
+
+
 class Linker:
     """Links one file whose libraries are linked, and looks up the names that are usable in it.
 
@@ -302,11 +314,7 @@ class Linker:
         if len(definitions) > 1:
             self._ambiguous(what, name, [file for file, _ in definitions])
         elif not definitions and not self._file.may_declare(name.text, declared):
-            basic = BASIC_TYPES.get(name.text)
-            is_sized = name.text[-1].isdigit()  # the type in ROS may differ
-            hint = (
-                Repair(f"write `{basic}`", None if is_sized else basic, (basic,) if is_sized else ()) if basic else None
-            )
+            hint = _basic_type(name.text)
             self._missing(name, f"there is no {what}", self.scope.usable(kind), hint)
         return definitions[0][1] if len(definitions) == 1 else None
 
