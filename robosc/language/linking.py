@@ -438,7 +438,7 @@ class Linker:
         )
         tokens = self._file.text.tokens
         at = tokens.index_at(name.start)
-        return Repair(hint_text, elsewhere=((tokens[at - 2].start, tokens[at - 1].end, ""),))
+        return Repair(hint_text, elsewhere=((tokens[at - 2].start, tokens[at - 1].end, ""),), is_offered=True)
 
     def _target(self, transition: rsc.Transition | rsc.RequirementTransition, name: Name) -> None:
         if isinstance(transition, rsc.RequirementTransition):
@@ -818,7 +818,8 @@ class Linker:
 
     def _index_before(self, name: Name) -> Repair:
         point = self._point_before(name).start
-        return Repair(f"write an index before it: `[0].{name.text}`", elsewhere=((point, point, "[0]"),))
+        hint = f"write an index before it: `[0].{name.text}`"
+        return Repair(hint, elsewhere=((point, point, "[0]"),), is_offered=True)
 
     def _point_before(self, name: Name) -> Token:
         tokens = self._file.text.tokens

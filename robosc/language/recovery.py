@@ -105,7 +105,9 @@ class _Recovery:
             token = tokens[brace.index]
             if brace.surplus:
                 why = "the next lines belong inside" if brace.text == "}" else "there is one before it"
-                self._report(brace.index, f"unexpected `{brace.text}`: {why}", Repair(_LEAVE_OUT, ""))
+                # An earlier `}` may be the wrong one.
+                repair = Repair(_LEAVE_OUT, "", is_offered=brace.text == "}")
+                self._report(brace.index, f"unexpected `{brace.text}`: {why}", repair)
                 self._blank(token.start, token.end)
                 continue
             # If several braces are missing at the end, only the innermost is reported.

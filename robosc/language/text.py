@@ -130,6 +130,9 @@ class Text:
         alternatives = [
             Alternative(f"write `{text}`", self.replace_tokens(start, end, text)) for text in repair.choices
         ]
+        if repair.is_offered:
+            alternatives.insert(0, Alternative(repair.hint, tuple(edits)))
+            edits = []
         return replace(finding, hint=repair.hint, edits=tuple(edits), alternatives=tuple(alternatives))
 
 

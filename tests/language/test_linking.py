@@ -181,6 +181,9 @@ def test_the_value_of_an_enum_belongs_to_no_component(tmp_path: Path) -> None:
     )
     assert underlined(found) == [("unresolved-reference", "clear")]
     assert found.findings[0].hint == "`clear` is a value of `Ahead`: write it without a component"
+    # A component of the same name would take it.
+    assert not found.findings[0].edits
+    assert len(found.findings[0].alternatives) == 1
 
 
 def test_properties_are_looked_up_in_the_type_before_them(tmp_path: Path) -> None:

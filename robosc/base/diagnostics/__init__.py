@@ -60,13 +60,15 @@ class Repair(NamedTuple):
 
     `hint` is a sentence for the user. `text` replaces the text of the finding's span; None if no single replacement
     fixes the finding. `choices` are replacements of which the user picks one. `elsewhere` lists further replacements in
-    the same file as (start, end, text), with offsets in code points from 0, the end exclusive.
+    the same file as (start, end, text), with offsets in code points from 0, the end exclusive. If `is_offered`, `text`
+    and `elsewhere` together are one choice: they may be wrong.
     """
 
     hint: str
     text: str | None = None
     choices: tuple[str, ...] = ()
     elsewhere: tuple[tuple[int, int, str], ...] = ()
+    is_offered: bool = False
 
 
 @dataclass(frozen=True, order=True)

@@ -223,7 +223,9 @@ def test_a_point_in_a_comment_is_none() -> None:
   }
 }
 """
-    assert fixed(content) == content.replace(". /* c.d */ x", "[0]. /* c.d */ x")
+    found = checked(content)
+    (offered,) = found.findings[0].alternatives
+    assert found.reading.file.text.after(offered.edits) == content.replace(". /* c.d */ x", "[0]. /* c.d */ x")
 
 
 @pytest.mark.parametrize(
@@ -272,9 +274,18 @@ def test_no_brace_goes_behind_another_error(brace: str) -> None:
     assert Counter(fixed(content))[brace] == Counter(content)[brace]
 
 
-def test_a_lone_brace_too_many_goes() -> None:
+def test_a_lone_brace_too_many_is_only_offered() -> None:
+    """An earlier one may be the wrong one."""
     content = ROBOT.replace("goto moving }", "goto moving }\n    }\n   ")
-    assert fixed(content) == ROBOT.replace("goto moving }", "goto moving }\n    \n   ")
+    assert fixed(content) == content
+    found = checked(content)
+    (offered,) = found.findings[0].alternatives
+    assert offered.title == "leave it out"
+    assert found.reading.file.text.after(offered.edits) == ROBOT.replace("goto moving }", "goto moving }\n    \n   ")
+
+
+def test_an_opening_brace_too_many_goes() -> None:
+    assert fixed(ROBOT.replace("behaviour {", "behaviour { {")) == ROBOT.replace("behaviour {", "behaviour { ")
 
 
 DOORS = """robot R {
