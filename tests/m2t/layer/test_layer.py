@@ -178,9 +178,9 @@ def test_quality_of_service(usher: robosc.Models) -> None:
     kept = "rclcpp::QoS(10){}.transient_local()".format
     speed, battery = ".keep_last(3).best_effort()", ".keep_last(7)"
     for given in (
-        f'"~/controller/speed", "/speed", rclcpp::QoS(10){speed}, {kept(speed)}, rclcpp::QoS(3),',
+        f'"~/controller/speed", "/speed", rclcpp::QoS(10){speed}, {kept(speed)}, rclcpp::QoS(10).keep_last(3),',
         f'"~/controller/stop", rclcpp::QoS(10).best_effort(), {kept(".best_effort()")}, rclcpp::QoS(10),',
-        f'"~/controller/battery", rclcpp::QoS(10){battery}, {kept(battery)}, rclcpp::QoS(7),',
+        f'"~/controller/battery", rclcpp::QoS(10){battery}, {kept(battery)}, rclcpp::QoS(10).keep_last(7),',
     ):
         assert given.replace(" .", ".") in node.replace(" .", ".")
     assert '"/lamp/light", rclcpp::ServicesQoS().keep_last(4).durability_volatile(), service_timeout' in node

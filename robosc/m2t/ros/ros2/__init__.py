@@ -5,9 +5,10 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from robosc.language.configuration import QualityOfService
+from robosc.language.configuration import quality
+from robosc.language.configuration.quality import Profile, Quality
 from robosc.m2t.ros.packages import controller_package, launch_path
-from robosc.model.semantics.communication import QUEUE_DEPTH, is_sensor_data
+from robosc.model.semantics.communication import QUEUE_DEPTH
 from robosc.model.semantics.naming import below_layer
 
 if TYPE_CHECKING:
@@ -23,6 +24,11 @@ _FOLDERS = {"message": "msg", "service": "srv", "action": "action"}
 #: Services and topics of an action. A layer remaps these, not the action's own name.
 _ACTION = [f"_action/{part}" for part in ("send_goal", "cancel_goal", "get_result", "feedback", "status")]
 _TESTED = ["launch_testing", "launch_testing_ament_cmake", "rclpy", "rosgraph_msgs"]
+_PROFILES = {
+    Profile.QUEUE: f"rclcpp::QoS({QUEUE_DEPTH})",
+    Profile.SENSOR_DATA: "rclcpp::SensorDataQoS()",
+    Profile.SERVICES: "rclcpp::ServicesQoS()",
+}
 _DURABILITY = {None: "", "volatile": ".durability_volatile()", "transient_local": ".transient_local()"}
 
 
@@ -60,13 +66,15 @@ class Ros2:
         return {
             "headers": self._headers(node, used.reports),
             **_build(libraries, types, started, _TESTED if tests else []),
-            "subscription_qos": lambda topic: _quality(_usual(topic), topic.topic, configuration),
+            "subscription_qos": lambda topic: _qos(_reception(topic, configuration)),
             # Without a setting, the durability is that of the publisher.
             "kept_qos": lambda topic: (
-                "" if _chosen(topic.topic, configuration).durability else _durability(topic, configuration)
+                "" if _reception(topic, configuration).settings.durability else _latched(topic, configuration)
             ),
-            "publisher_qos": lambda topic: _quality(_sent(topic), topic.topic, configuration),
-            "client_qos": lambda client: _quality(_client(client), client.name, configuration),
+            "publisher_qos": lambda topic: _qos(
+                quality.transmission(topic.topic, configuration, on_change=topic.on_change)
+            ),
+            "client_qos": lambda client: _client(client, configuration),
         }
 
     def layer(self, layer: LayerNode, configuration: Configuration, used: UsedPackages) -> dict[str, Any]:
@@ -81,10 +89,10 @@ class Ros2:
             "launch_path": launch_path(configuration),
             "controller_side": lambda name: f"~/{below_layer(name)}",
             # Relayed messages have the durability of the publisher.
-            "received_qos": lambda topic: _quality(_usual(topic), topic.topic, configuration, with_durability=False),
-            "kept_qos": lambda topic: _durability(topic, configuration),
-            "sent_qos": lambda topic: f"rclcpp::QoS({_chosen(topic.topic, configuration).depth or QUEUE_DEPTH})",
-            "client_qos": lambda call: _quality(_client(call), call.name, configuration),
+            "received_qos": lambda topic: _qos(_reception(topic, configuration).volatile),
+            "kept_qos": lambda topic: _latched(topic, configuration),
+            "sent_qos": lambda topic: _qos(quality.forwarding(topic.topic, configuration)),
+            "client_qos": lambda call: _client(call, configuration),
         }
 
     def _headers(self, node: GeneratedNode, reports: Sequence[rosgraph.Interface]) -> list[str]:
@@ -106,36 +114,22 @@ def _build(
     }
 
 
-def _usual(topic: Subscription | Publisher) -> str:
-    """Return the default quality of service for receiving messages of a topic."""
-    return "rclcpp::SensorDataQoS()" if is_sensor_data(topic.interface.package) else f"rclcpp::QoS({QUEUE_DEPTH})"
+def _reception(topic: Subscription | Publisher, configuration: Configuration) -> Quality:
+    return quality.reception(topic.interface, topic.topic, configuration)
 
 
-def _durability(topic: Subscription | Publisher, configuration: Configuration) -> str:
-    """Return the quality of service for receiving messages that publishers store: these are reliable."""
-    unreliable = is_sensor_data(topic.interface.package) and not _chosen(topic.topic, configuration).reliability
-    usual = f"{_usual(topic)}{'.reliable()' if unreliable else ''}"
-    return f"{_quality(usual, topic.topic, configuration, with_durability=False)}.transient_local()"
+def _latched(topic: Subscription | Publisher, configuration: Configuration) -> str:
+    return _qos(_reception(topic, configuration).latched)
 
 
-def _client(client: Client) -> str:
-    """Return the default quality of service of calls or feedback."""
-    return f"rclcpp::QoS({QUEUE_DEPTH})" if client.cancel else "rclcpp::ServicesQoS()"
+def _client(client: Client, configuration: Configuration) -> str:
+    quality_of = quality.feedback if client.cancel else quality.service_calls
+    return _qos(quality_of(client.name, configuration))
 
 
-def _chosen(name: str, configuration: Configuration) -> QualityOfService:
-    """Return the configured quality of service of a topic, service or action."""
-    return configuration.qos.get(name.removeprefix("/")) or QualityOfService()
-
-
-def _sent(topic: Publisher) -> str:
-    """Return the default quality of service of commands. Those sent on change are stored for late subscribers."""
-    return f"rclcpp::QoS({QUEUE_DEPTH}){'.transient_local()' if topic.on_change else ''}"
-
-
-def _quality(usual: str, name: str, configuration: Configuration, *, with_durability: bool = True) -> str:
-    """Return a quality of service as C++: the default, changed by the configuration of this name."""
-    chosen = _chosen(name, configuration)
+def _qos(quality: Quality) -> str:
+    """Return a quality of service in C++."""
+    chosen = quality.settings
     depth = f".keep_last({chosen.depth})" if chosen.depth else ""
     reliability = f".{chosen.reliability}()" if chosen.reliability else ""
-    return usual + depth + reliability + (_DURABILITY[chosen.durability] if with_durability else "")
+    return _PROFILES[quality.profile] + depth + reliability + _DURABILITY[chosen.durability]

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.base.ros_types import Section
 from robosc.base.ros_types.wire import FOLDERS
-from robosc.language.configuration import QualityOfService
+from robosc.language.configuration import quality
+from robosc.language.configuration.quality import Profile
 from robosc.model import rosgraph
-from robosc.model.semantics.communication import QUEUE_DEPTH, is_sensor_data
+from robosc.model.semantics.communication import QUEUE_DEPTH
 from robosc.model.semantics.naming import below_layer
 from robosc.run.runtime.core.event_loop import EventLoop
 from robosc.run.runtime.core.node import DIAGNOSTICS, FAREWELL, LONGEST_WAIT, RunningNode, StartError
@@ -60,11 +61,17 @@ if TYPE_CHECKING:
 
     from robosc.language.configuration import Configuration
     from robosc.language.configuration.parameters import Parameter
+    from robosc.language.configuration.quality import Quality
     from robosc.run.runtime.core.event_handler import EventHandler
     from robosc.run.runtime.core.layer import Layer
     from robosc.run.runtime.core.port import Client, Goal, Message
     from robosc.run.runtime.core.proxies import ActionProxy
 
+_PROFILES = {
+    Profile.QUEUE: QoSProfile(depth=QUEUE_DEPTH),
+    Profile.SENSOR_DATA: qos_profile_sensor_data,
+    Profile.SERVICES: qos_profile_services_default,
+}
 #: QoS policies that parameters may set of a subscription that receives kept messages.
 _KEPT_POLICIES = (QoSPolicyKind.HISTORY, QoSPolicyKind.DEPTH)
 #: Seconds between two looks at the publishers of topics.
@@ -123,8 +130,8 @@ class Ros2Node(RunningNode):
     def open_reports(self, names: Sequence[str]) -> None:
         for name in names:
             latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-            quality = latched if name == "definition" else QoSProfile(depth=QUEUE_DEPTH)
-            self._reports[name] = self.node.create_publisher(String, f"~/{name}", quality)
+            qos = latched if name == "definition" else QoSProfile(depth=QUEUE_DEPTH)
+            self._reports[name] = self.node.create_publisher(String, f"~/{name}", qos)
 
     def _diagnostics_publisher(self, kind: Any) -> Any:
         return self.node.create_publisher(kind, DIAGNOSTICS, QoSProfile(depth=QUEUE_DEPTH))
@@ -200,33 +207,18 @@ class Ros2Node(RunningNode):
 
     # Topics
 
-    def quality(self, name: str, usual: Any = None) -> Any:
-        """Return the quality of service of a topic, service or action: the configuration, completed by `usual`."""
-        usual = usual or QoSProfile(depth=QUEUE_DEPTH)
-        chosen = self._configuration.qos.get(name.removeprefix("/"))
-        if chosen is None:
-            return usual
-        profile = QoSProfile(
-            depth=chosen.depth or usual.depth, reliability=usual.reliability, durability=usual.durability
-        )
-        if chosen.reliability:
-            profile.reliability = ReliabilityPolicy[chosen.reliability.upper()]
-        if chosen.durability:
-            profile.durability = DurabilityPolicy[chosen.durability.upper()]
-        return profile
+    def _reception(self, element: rosgraph.Subscription | rosgraph.Publisher) -> Quality:
+        return quality.reception(element.interface, element.topic, self._configuration)
 
-    def _chosen(self, element: rosgraph.Subscription | rosgraph.Publisher) -> QualityOfService:
-        """Return the configured quality of service of a topic."""
-        return self._configuration.qos.get(element.topic.removeprefix("/")) or QualityOfService()
-
-    def _received_quality(self, element: rosgraph.Subscription | rosgraph.Publisher) -> Any:
-        sensor = is_sensor_data(element.interface.package)
-        return self.quality(element.topic, qos_profile_sensor_data if sensor else None)
+    def feedback_qos(self, action: rosgraph.ActionClient) -> Any:
+        """Return the quality of service of an action's feedback."""
+        return _qos(quality.feedback(action.identifier, self._configuration))
 
     def _publisher(self, publisher: rosgraph.Publisher) -> Any:
-        is_latched = all(sending.onChange for sending in publisher.sendings)
-        usual = QoSProfile(depth=QUEUE_DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL) if is_latched else None
-        self._qualities[publisher] = self.quality(publisher.topic, usual)
+        on_change = all(sending.onChange for sending in publisher.sendings)
+        self._qualities[publisher] = _qos(
+            quality.transmission(publisher.topic, self._configuration, on_change=on_change)
+        )
         return self.node.create_publisher(
             self._types[publisher.interface],
             publisher.topic,
@@ -238,10 +230,10 @@ class Ros2Node(RunningNode):
 
     def _subscribe(self, subscription: rosgraph.Subscription, receive: Callable[[Message], None]) -> None:
         subscriptions: list[Any] = []
+        reception = self._reception(subscription)
 
         def subscribe(lasting: bool) -> None:
-            quality = self._received_quality(subscription)
-            requested = _durable(quality, self._chosen(subscription)) if lasting else quality
+            requested = _qos(reception.latched if lasting else reception)
             while subscriptions:
                 self.node.destroy_subscription(subscriptions.pop())
             self._qualities[subscription] = requested
@@ -260,7 +252,7 @@ class Ros2Node(RunningNode):
             )
 
         subscribe(lasting=False)
-        if self._chosen(subscription).durability is None:
+        if reception.settings.durability is None:
             self._durabilities.watch(subscription.topic, subscribe, lasting=False)
 
     def _relay(
@@ -270,11 +262,9 @@ class Ros2Node(RunningNode):
         target: str,
         passes: Callable[[Message], bool],
     ) -> _Relay:
-        # Forwarded messages are reliable, whatever the received ones are.
-        chosen = self._chosen(element)
-        sent = QoSProfile(depth=chosen.depth or QUEUE_DEPTH)
-        kind, received = self._types[element.interface], self._received_quality(element)
-        return _Relay(self.node, self._durabilities, _Route(kind, source, target, received, sent, chosen), passes)
+        sent = quality.forwarding(element.topic, self._configuration)
+        route = _Route(self._types[element.interface], source, target, self._reception(element), sent)
+        return _Relay(self.node, self._durabilities, route, passes)
 
     def type_name(self, interface: rosgraph.Interface) -> str:
         return f"{interface.package}/{FOLDERS[interface.kind.name]}/{interface.type}"
@@ -359,8 +349,8 @@ class Ros2Node(RunningNode):
         return bool(connected.server_is_ready() if action else connected.service_is_ready())
 
     def _service_client(self, service: rosgraph.ServiceClient) -> Any:
-        quality = self.quality(service.identifier, qos_profile_services_default)
-        return self.node.create_client(self._types[service.interface], service.identifier, qos_profile=quality)
+        qos = _qos(quality.service_calls(service.identifier, self._configuration))
+        return self.node.create_client(self._types[service.interface], service.identifier, qos_profile=qos)
 
     def call(self, client: rosgraph.ServiceClient, request: Message, handlers: CallHandlers) -> None:
         connected = self._clients[client]
@@ -383,8 +373,8 @@ class Ros2Node(RunningNode):
         service.send_response = lambda _, caller: under_way.pop().send_with(lambda response: send(response, caller))
 
     def _action_client(self, action: rosgraph.ActionClient) -> Any:
-        kind, quality = self._types[action.interface], self.quality(action.identifier)
-        return rclpy.action.ActionClient(self.node, kind, action.identifier, feedback_sub_qos_profile=quality)
+        kind, qos = self._types[action.interface], self.feedback_qos(action)
+        return rclpy.action.ActionClient(self.node, kind, action.identifier, feedback_sub_qos_profile=qos)
 
     def send_goal(self, client: rosgraph.ActionClient, goal: Message, handlers: GoalHandlers) -> Goal:
         return SentGoal(self._clients[client], goal, handlers, partial(self.servers, client.identifier))
@@ -435,9 +425,8 @@ class _Route:
     kind: Any
     source: str
     target: str
-    received: Any
-    sent: Any
-    chosen: QualityOfService
+    received: Quality
+    sent: Quality
 
 
 class _Durabilities:
@@ -492,7 +481,7 @@ class _Relay:
         self._passes = passes
         self._lasting = False
         self._subscription: Any = None
-        self._publisher = node.create_publisher(route.kind, route.target, route.sent)
+        self._publisher = node.create_publisher(route.kind, route.target, _qos(route.sent))
         durabilities.watch(node.resolve_topic_name(route.source), self._open)
 
     def _open(self, lasting: bool) -> None:
@@ -500,12 +489,12 @@ class _Relay:
         if lasting != self._lasting:
             self._lasting = lasting
             node.destroy_publisher(self._publisher)
-            sent = _durable(route.sent, route.chosen) if lasting else route.sent
-            self._publisher = node.create_publisher(route.kind, route.target, sent)
+            sent = route.sent.latched if lasting else route.sent
+            self._publisher = node.create_publisher(route.kind, route.target, _qos(sent))
         if self._subscription is not None:
             node.destroy_subscription(self._subscription)
-        quality = _durable(route.received, route.chosen) if lasting else _volatile(route.received)
-        self._subscription = node.create_subscription(route.kind, route.source, self._forward, quality)
+        received = route.received.latched if lasting else route.received.volatile
+        self._subscription = node.create_subscription(route.kind, route.source, self._forward, _qos(received))
 
     def _forward(self, message: Message) -> None:
         if self._passes(message):
@@ -520,12 +509,14 @@ class _Relay:
         self._publisher.wait_for_all_acked(timeout)
 
 
-def _durable(quality: Any, chosen: QualityOfService) -> Any:
-    """Return the same quality, but transient-local, and reliable unless the configuration sets the reliability."""
-    reliability = quality.reliability if chosen.reliability else ReliabilityPolicy.RELIABLE
-    return QoSProfile(depth=quality.depth, reliability=reliability, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-
-
-def _volatile(quality: Any) -> Any:
-    """Return the same quality, but volatile."""
-    return QoSProfile(depth=quality.depth, reliability=quality.reliability, durability=DurabilityPolicy.VOLATILE)
+def _qos(quality: Quality) -> Any:
+    """Return a quality of service for rclpy."""
+    profile, chosen = _PROFILES[quality.profile], quality.settings
+    qos = QoSProfile(
+        depth=chosen.depth or profile.depth, reliability=profile.reliability, durability=profile.durability
+    )
+    if chosen.reliability:
+        qos.reliability = ReliabilityPolicy[chosen.reliability.upper()]
+    if chosen.durability:
+        qos.durability = DurabilityPolicy[chosen.durability.upper()]
+    return qos

@@ -126,7 +126,7 @@ class Layer : public GuardedNode<rclcpp::Node> {
         [this](const auto& message) { return on_scan(message); });
     speed_relay_ = std::make_unique<MessageRelay<std_msgs::msg::Float32>>(
         *this, guard_, "~/controller/speed", "/speed", rclcpp::QoS(10).keep_last(20).best_effort(), rclcpp::QoS(10)
-            .keep_last(20).best_effort().transient_local(), rclcpp::QoS(20),
+            .keep_last(20).best_effort().transient_local(), rclcpp::QoS(10).keep_last(20),
         [this](const auto&) { return pass_speed(); });
     label_relay_ = std::make_unique<MessageRelay<std_msgs::msg::String>>(
         *this, guard_, "~/controller/label", "label", rclcpp::QoS(10), rclcpp::QoS(10).transient_local(),
