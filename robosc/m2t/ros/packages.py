@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol
+from typing import TYPE_CHECKING, ClassVar, Literal, Protocol
 
 from robosc.base.files.resources import locate
 from robosc.language.configuration import NO_STOP, NO_STOP_ON_SILENCE
@@ -17,6 +17,7 @@ from robosc.m2t.ros.names import CppNames
 from robosc.m2t.ros.node import GeneratedNode, Variable
 from robosc.m2t.ros.rendering import fold, node_environment
 from robosc.m2t.ros.statuses import statuses
+from robosc.m2t.ros.values import NodeValues
 from robosc.model import rosgraph
 from robosc.model.semantics.definition import definition_text
 
@@ -28,9 +29,8 @@ if TYPE_CHECKING:
     from robosc.language.configuration.parameters import Parameter
     from robosc.m2t.models import Models, TraceTest
     from robosc.m2t.ros.statuses import Status
+    from robosc.m2t.ros.values import BuildValues
     from robosc.model.engine import EngineModel
-
-    Values = Mapping[str, Any]
 
 #: Files of a stand-alone package: path to template.
 _PACKAGE = {"package.xml": "package.xml.j2", "CMakeLists.txt": "CMakeLists.txt.j2"}
@@ -96,8 +96,8 @@ class Middleware(Protocol):
 
     def controller(
         self, node: GeneratedNode, configuration: Configuration, used: UsedPackages, *, tests: bool
-    ) -> Values:
-        """Return template values that only a controller has."""
+    ) -> BuildValues:
+        """Return the template values of a controller that depend on the ROS version."""
 
 
 @dataclass(frozen=True)
@@ -106,8 +106,8 @@ class RosTarget:
 
     kind: Literal["controller", "layer"]
     ros: Middleware
-    #: Function that returns the template values that only a layer has.
-    layer: Callable[[LayerNode, Configuration, UsedPackages], Values] | None = None
+    #: Function that returns the template values of a layer that depend on the ROS version.
+    layer: Callable[[LayerNode, Configuration, UsedPackages], BuildValues] | None = None
 
     def preconditions(self, models: Models, configuration: Configuration) -> list[Diagnostic]:
         """Return errors that make such a node impossible, and warnings on settings without effect."""
@@ -204,50 +204,50 @@ class RosTarget:
         own = [definition.removeprefix("include/")] if configuration.publish_state_information else []
         declared = (layer_parameters if layer else controller_parameters)(graph, configuration, "")
         text = f"The {'supervisory controller' if kind == 'controller' else 'supervisory layer'} of {graph.name}."
-        values = {
-            "kind": kind,
-            "node": node,
-            "layer": layer,
-            "tests": tests,
-            "package": name,
-            # Package that contains the node: its own, or the user's.
-            "ros_package": into or name,
-            "has_own_types": into in types,
-            "player": _player(name, into),
-            "about": configuration.package,
-            "description": configuration.package.description or text,
-            "included": sorted([*own, *(f"{header}.hpp" for header in included)]),
-            "settings": configuration,
-            "parameters": {parameter.name: parameter for parameter in declared},
-            "has_parameters_file": has_file,
+        values = NodeValues(
+            kind=kind,
+            node=node,
+            layer=layer,
+            tests=tests,
+            package=name,
+            ros_package=into or name,
+            has_own_types=into in types,
+            player=_player(name, into),
+            about=configuration.package,
+            description=configuration.package.description or text,
+            included=sorted([*own, *(f"{header}.hpp" for header in included)]),
+            settings=configuration,
+            parameters={parameter.name: parameter for parameter in declared},
+            has_parameters_file=has_file,
             # The launch file of a layer has an argument for its log.
-            "parameter_groups": _groups(
+            parameter_groups=_groups(
                 parameter
                 for parameter in declared
                 if kind == "controller" or parameter.name != "event_log" or configuration.write_events_to_log
             ),
-            "publishes_state": configuration.publish_state_information,
-            "statuses": reported_statuses,
-            "typed_fields": typed,
-            "typed": kind_of_state if configuration.typed_state else None,
-            "remembers": bool(node.may_withhold and (reported_statuses or node.instead)),
-            "gates": list(commands.values()),
-            "writes_log": configuration.write_events_to_log,
-            "definition": definition_text(graph),
-            "no_stop": _no_stop(node, configuration),
-            "awaited": _awaited(node, configuration) if kind == "controller" else [],
-            "has_defaults": has_defaults,
-            "turned": _turned(node) if ros.version == 1 else [],
-            "frame": lambda topic: configuration.frame_id.get(topic.removeprefix("/"), ""),
-            "controller": configuration.supervisor.controller,
-            **(
-                self.layer(layer, configuration, used)
-                if layer and self.layer
-                else ros.controller(node, configuration, used, tests=tests is not None)
-            ),
-        }
+            publishes_state=configuration.publish_state_information,
+            statuses=reported_statuses,
+            typed_fields=typed,
+            typed=kind_of_state if configuration.typed_state else None,
+            remembers=bool(node.may_withhold and (reported_statuses or node.instead)),
+            gates=list(commands.values()),
+            writes_log=configuration.write_events_to_log,
+            definition=definition_text(graph),
+            no_stop=_no_stop(node, configuration),
+            awaited=_awaited(node, configuration) if kind == "controller" else [],
+            turned=_turned(node) if ros.version == 1 else [],
+            has_defaults=has_defaults,
+            frame=lambda topic: configuration.frame_id.get(topic.removeprefix("/"), ""),
+        )
+        if layer and self.layer:
+            build = self.layer(layer, configuration, used)
+        else:
+            build = ros.controller(node, configuration, used, tests=tests is not None)
         templates = node_environment(f"robosc.m2t.ros.ros{ros.version}")
-        texts = {path: templates.get_template(template).render(values) for path, template in files.items()}
+        texts = {
+            path: templates.get_template(template).render(**vars(values), **vars(build))
+            for path, template in files.items()
+        }
         texts[source] = fold(texts[source])
         texts |= {f"include/{header}.hpp": text for header, text in shipped_headers(included).items()}
         supervisor = engine.generate(executed, configuration.control_loop)

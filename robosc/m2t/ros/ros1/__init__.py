@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
 
+from robosc.m2t.ros.values import BuildValues
 from robosc.model import rosgraph
 
 if TYPE_CHECKING:
@@ -15,6 +17,13 @@ if TYPE_CHECKING:
 
 #: Topics of an action. ROS 1 remaps these, not the action's own name.
 _ACTION = ("goal", "cancel", "status", "feedback", "result")
+
+
+@dataclass(frozen=True)
+class Ros1Values(BuildValues):
+    """Values of a ROS 1 package: `names` are those that its launch file remaps."""
+
+    names: Sequence[tuple[str, str, str, Sequence[str]]]
 
 
 class Ros1:
@@ -40,24 +49,21 @@ class Ros1:
         used: UsedPackages,
         *,
         tests: bool,
-    ) -> dict[str, Any]:
-        """Return template values that only a controller has; see `Middleware`."""
+    ) -> Ros1Values:
+        """Return the template values of a controller; see `Middleware`."""
         libraries = {"rosconsole", "roscpp", "xmlrpcpp", *(["actionlib"] if node.actions else [])}
-        return {
-            "headers": self._headers(node, used.reports),
-            **_build({*libraries, *used.types}, ["rosgraph_msgs", "rospy", "rostest"] if tests else []),
-            "names": list(_names(node)),
-        }
+        built = sorted({*libraries, *used.types})
+        tested = ["rosgraph_msgs", "rospy", "rostest"] if tests else []
+        return Ros1Values(
+            headers=self._headers(node, used.reports),
+            build_tool="catkin",
+            dependencies=built,
+            package_depends=[("build_", built), ("exec_", built), ("test_", tested)],
+            names=list(_names(node)),
+        )
 
     def _headers(self, node: GeneratedNode, reports: Sequence[rosgraph.Interface]) -> list[str]:
         return sorted({self.header(interface) for interface in [*node.interfaces, *reports]} | {"ros/ros.h"})
-
-
-def _build(dependencies: set[str], tested: Sequence[str]) -> dict[str, Any]:
-    """Return values for the build files: packages needed to build and start a node, and packages of its tests."""
-    built = sorted(dependencies)
-    depends = [("build_", built), ("exec_", built), ("test_", tested)]
-    return {"build_tool": "catkin", "dependencies": built, "package_depends": depends}
 
 
 def _names(node: GeneratedNode) -> Iterator[tuple[str, str, str, list[str]]]:

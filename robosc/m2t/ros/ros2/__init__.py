@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, Any, ClassVar
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
 
 from robosc.language.configuration import quality
 from robosc.language.configuration.quality import Profile, Quality
 from robosc.m2t.ros.packages import controller_package, launch_path
+from robosc.m2t.ros.values import BuildValues
 from robosc.model.semantics.communication import QUEUE_DEPTH
 from robosc.model.semantics.naming import below_layer
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
+    from collections.abc import Callable, Collection, Mapping, Sequence
 
-    from robosc.language.configuration import Configuration
+    from robosc.language.configuration import Configuration, ExistingController
     from robosc.m2t.ros.layer import LayerNode
     from robosc.m2t.ros.node import Client, GeneratedNode, Publisher, Subscription
     from robosc.m2t.ros.packages import UsedPackages
@@ -29,7 +31,45 @@ _PROFILES = {
     Profile.SENSOR_DATA: "rclcpp::SensorDataQoS()",
     Profile.SERVICES: "rclcpp::ServicesQoS()",
 }
+_BUILD_TOOL = "ament_cmake"
 _DURABILITY = {None: "", "volatile": ".durability_volatile()", "transient_local": ".transient_local()"}
+
+
+@dataclass(frozen=True)
+class Ros2Values(BuildValues):
+    """Values of a ROS 2 package: packages of its message types, its libraries in CMake, and qualities of service.
+
+    `kept_qos` is the quality of a topic whose publishers store messages; a controller has none if the configuration
+    sets the durability.
+    """
+
+    messages: Sequence[str]
+    libraries: Sequence[str]
+    client_qos: Callable[[Client], str]
+    kept_qos: Callable[[Subscription | Publisher], str]
+
+
+@dataclass(frozen=True)
+class ControllerValues(Ros2Values):
+    """Values of a controller."""
+
+    subscription_qos: Callable[[Subscription], str]
+    publisher_qos: Callable[[Publisher], str]
+
+
+@dataclass(frozen=True)
+class LayerValues(Ros2Values):
+    """Values of a layer: `names` are those that its launch file remaps for `controller`.
+
+    `launch_path` is the launch file of the controller, `controller_side` the name of a topic towards the controller.
+    """
+
+    names: Sequence[str]
+    controller: ExistingController
+    launch_path: str
+    controller_side: Callable[[str], str]
+    received_qos: Callable[[Subscription | Publisher], str]
+    sent_qos: Callable[[Subscription | Publisher], str]
 
 
 class Ros2:
@@ -51,8 +91,8 @@ class Ros2:
 
     def controller(
         self, node: GeneratedNode, configuration: Configuration, used: UsedPackages, *, tests: bool
-    ) -> dict[str, Any]:
-        """Return template values that only a controller has; see `Middleware`."""
+    ) -> ControllerValues:
+        """Return the template values of a controller; see `Middleware`."""
         types = set(used.types)
         libraries, started = ["rclcpp"], ["launch", "launch_ros"]
         if node.actions:
@@ -63,55 +103,62 @@ class Ros2:
         if configuration.lifecycle:
             libraries.append("rclcpp_lifecycle")
             started.append("lifecycle_msgs")
-        return {
-            "headers": self._headers(node, used.reports),
-            **_build(libraries, types, started, _TESTED if tests else []),
-            "subscription_qos": lambda topic: _qos(_reception(topic, configuration)),
+        return ControllerValues(
+            headers=self._headers(node, used.reports),
+            build_tool=_BUILD_TOOL,
+            dependencies=_dependencies(libraries, types),
+            package_depends=_package_depends(libraries, types, started, _TESTED if tests else []),
+            messages=sorted(types),
+            libraries=[f"{library}::{library}" for library in libraries],
+            client_qos=lambda client: _client(client, configuration),
             # Without a setting, the durability is that of the publisher.
-            "kept_qos": lambda topic: (
+            kept_qos=lambda topic: (
                 "" if _reception(topic, configuration).settings.durability else _latched(topic, configuration)
             ),
-            "publisher_qos": lambda topic: _qos(
+            subscription_qos=lambda topic: _qos(_reception(topic, configuration)),
+            publisher_qos=lambda topic: _qos(
                 quality.transmission(topic.topic, configuration, on_change=topic.on_change)
             ),
-            "client_qos": lambda client: _client(client, configuration),
-        }
+        )
 
-    def layer(self, layer: LayerNode, configuration: Configuration, used: UsedPackages) -> dict[str, Any]:
-        """Return template values that only a layer has; see `Middleware`."""
+    def layer(self, layer: LayerNode, configuration: Configuration, used: UsedPackages) -> LayerValues:
+        """Return the template values of a layer; see `Middleware`."""
         types = {*used.types, *(["action_msgs"] if layer.node.actions else [])}
         hands_on = layer.instead and layer.node.hands_on
         libraries = ["rclcpp", *(["rosidl_typesupport_introspection_cpp"] if hands_on else [])]
-        return {
-            "headers": self._headers(layer.node, used.reports),
-            **_build(libraries, types, {"launch", "launch_ros", *controller_package(configuration)}),
-            "names": layer.remapped(_ACTION),
-            "launch_path": launch_path(configuration),
-            "controller_side": lambda name: f"~/{below_layer(name)}",
+        started = {"launch", "launch_ros", *controller_package(configuration)}
+        return LayerValues(
+            headers=self._headers(layer.node, used.reports),
+            build_tool=_BUILD_TOOL,
+            dependencies=_dependencies(libraries, types),
+            package_depends=_package_depends(libraries, types, started),
+            messages=sorted(types),
+            libraries=[f"{library}::{library}" for library in libraries],
+            client_qos=lambda client: _client(client, configuration),
             # Relayed messages have the durability of the publisher.
-            "received_qos": lambda topic: _qos(_reception(topic, configuration).volatile),
-            "kept_qos": lambda topic: _latched(topic, configuration),
-            "sent_qos": lambda topic: _qos(quality.forwarding(topic.topic, configuration)),
-            "client_qos": lambda call: _client(call, configuration),
-        }
+            kept_qos=lambda topic: _latched(topic, configuration),
+            names=layer.remapped(_ACTION),
+            controller=configuration.supervisor.controller,
+            launch_path=launch_path(configuration),
+            controller_side=lambda name: f"~/{below_layer(name)}",
+            received_qos=lambda topic: _qos(_reception(topic, configuration).volatile),
+            sent_qos=lambda topic: _qos(quality.forwarding(topic.topic, configuration)),
+        )
 
     def _headers(self, node: GeneratedNode, reports: Sequence[rosgraph.Interface]) -> list[str]:
         always = {"rclcpp/rclcpp.hpp", "rclcpp_components/register_node_macro.hpp"}
         return sorted({self.header(interface) for interface in [*node.interfaces, *reports]} | always)
 
 
-def _build(
+def _dependencies(libraries: Sequence[str], types: set[str]) -> list[str]:
+    """Return the packages that a node needs: its libraries and the packages of its types."""
+    return sorted({*libraries, "rclcpp_components", *types})
+
+
+def _package_depends(
     libraries: Sequence[str], types: set[str], started: Collection[str], tested: Sequence[str] = ()
-) -> dict[str, Any]:
-    """Return values for the build files: libraries of the node, packages of its types, its start and its tests."""
-    dependencies = sorted({*libraries, "rclcpp_components", *types})
-    return {
-        "build_tool": "ament_cmake",
-        "dependencies": dependencies,
-        "messages": sorted(types),
-        "libraries": [f"{library}::{library}" for library in libraries],
-        "package_depends": [("", dependencies), ("exec_", sorted(started)), ("test_", tested)],
-    }
+) -> list[tuple[str, Sequence[str]]]:
+    return [("", _dependencies(libraries, types)), ("exec_", sorted(started)), ("test_", tested)]
 
 
 def _reception(topic: Subscription | Publisher, configuration: Configuration) -> Quality:

@@ -1,0 +1,73 @@
+"""Values that the templates of ROS packages print."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from robosc.language.configuration import Configuration, Package
+    from robosc.language.configuration.parameters import Parameter
+    from robosc.m2t.models import TraceTest
+    from robosc.m2t.ros.gates import Gate
+    from robosc.m2t.ros.layer import LayerNode
+    from robosc.m2t.ros.node import GeneratedNode, Variable
+    from robosc.m2t.ros.statuses import Status
+    from robosc.m2t.ros.typed_state import Field
+    from robosc.model import rosgraph
+
+
+@dataclass(frozen=True)
+class NodeValues:
+    """Values of a node's package that hold for every ROS version.
+
+    `ros_package` is the package that contains the node: its own, or the user's. `included` are headers in `include`.
+    `parameter_groups` are the parameters of the parameters file. `typed` is the type of the typed state, None without
+    one, and `typed_fields` are its fields. `remembers` is whether the node records which commands are withheld.
+    `no_stop` and `turned` are the results of `packages`' functions of these names. `has_defaults` is a function of an
+    interface, `frame` one of a topic.
+    """
+
+    kind: str
+    node: GeneratedNode
+    layer: LayerNode | None
+    tests: TraceTest | None
+    package: str
+    ros_package: str
+    has_own_types: bool
+    player: str
+    about: Package
+    description: str
+    included: Sequence[str]
+    settings: Configuration
+    parameters: Mapping[str, Parameter]
+    has_parameters_file: bool
+    parameter_groups: Mapping[str, Mapping[str, Parameter]]
+    publishes_state: bool
+    statuses: Sequence[Status]
+    typed_fields: Sequence[Field]
+    typed: rosgraph.Interface | None
+    remembers: bool
+    gates: Sequence[Gate]
+    writes_log: bool
+    definition: str
+    no_stop: Sequence[tuple[str, str]]
+    awaited: Sequence[str]
+    turned: Sequence[tuple[Variable, str]]
+    has_defaults: Callable[[rosgraph.Interface], bool]
+    frame: Callable[[str], str]
+
+
+@dataclass(frozen=True)
+class BuildValues:
+    """Values of a package that depend on the ROS version: its headers, its build files and its dependencies.
+
+    `package_depends` are the packages of each kind of `<depend>`.
+    """
+
+    headers: Sequence[str]
+    build_tool: str
+    dependencies: Sequence[str]
+    package_depends: Sequence[tuple[str, Sequence[str]]]
