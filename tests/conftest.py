@@ -23,7 +23,7 @@ from click.testing import CliRunner
 from hypothesis import settings
 
 from robosc.analysis.verify import verify
-from robosc.engine import cache_transformations
+from robosc.engine import cache_results
 from robosc.language import grammar, recovery
 from robosc.language.configuration import Configuration
 from robosc.m2t.models import TraceTest
@@ -145,7 +145,7 @@ def planned_once(shared_folder: Path) -> Callable[[Path, RosGraph, Configuration
 
     def once(path: Path, graph: RosGraph, settings: Configuration) -> list[TraceTest]:
         def made() -> str:
-            with cache_transformations():
+            with cache_results():
                 return b64encode(pickle.dumps([trace_test(graph, settings, version) for version in (1, 2)])).decode()
 
         known = made_once(shared_folder, f"tours-{path.parent.name}-{path.stem}", made)

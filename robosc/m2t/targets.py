@@ -221,6 +221,6 @@ def targets() -> dict[str, Target]:
 
 def together() -> AbstractContextManager[None]:
     """Cache the results that several targets share. Models must not change in this context."""
-    from robosc.m2m.memo import cache_transformations
+    from robosc.base.cache import cache_results
 
-    return cache_transformations()
+    return cache_results()

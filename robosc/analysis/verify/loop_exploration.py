@@ -13,7 +13,7 @@ from robosc.analysis.system import format_count
 from robosc.analysis.verify.differences import refute
 from robosc.analysis.verify.loop_lockstep import DifferenceError, Lockstep, SavedLoops
 from robosc.analysis.verify.verdict import Outcome, Verdict
-from robosc.engine import Settings, cache_transformations
+from robosc.engine import Settings, cache_results
 from robosc.model.semantics.roles import Roles
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ def explore_loop(program: CProgram, effort: LoopEffort | None = None) -> Verdict
     """
     effort = effort or LoopEffort()
     most = max(_QUESTIONS // max(len(program.events), 1), 1)
-    with cache_transformations(), program.start_command([program.follower]) as process:
+    with cache_results(), program.start_command([program.follower]) as process:
         lockstep = Lockstep(program.model, process)
         try:
             seen = _explored(lockstep, min(effort.explored, most))

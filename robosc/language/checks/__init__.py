@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from robosc.base.cache import cache_results
 from robosc.base.diagnostics import Diagnostic, in_order
 from robosc.base.interruption import checkpoint
 from robosc.base.ros_types import RosTypes
 from robosc.language.checks import rules as _rules  # noqa: F401 - registers them
-from robosc.language.checks.libraries import cache_results, reachable
+from robosc.language.checks.libraries import reachable
 from robosc.language.checks.rule import RULES
 from robosc.model.places import place
 

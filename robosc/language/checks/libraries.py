@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from contextlib import contextmanager
-from contextvars import ContextVar
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from robosc.language.checks.facts import fact, keeping_facts
+from robosc.base.cache import cached
 from robosc.language.checks.rule import Finding, on_line
 from robosc.model.semantics.expansion import constant_value
 from robosc.model.semantics.instances import Instances, imported_components, libraries
@@ -19,19 +17,10 @@ if TYPE_CHECKING:
     from robosc.model import expression as ex
     from robosc.model import robosc as rsc
     from robosc.model.semantics.evaluation import Value
-    from robosc.model.semantics.instances import Instance, Resolved
+    from robosc.model.semantics.instances import Instance
 
     #: Predicate on a robot or library by itself.
     Holds = Callable[[rsc.Base], bool]
-
-
-@dataclass
-class _Memory:
-    """Cache of one check: most rules look at the same bases."""
-
-    instances: dict[rsc.Base, Instances] = field(default_factory=dict)
-    resolved: Resolved = field(default_factory=dict)
-    reachable: dict[tuple[rsc.Base, Holds], Cell | None] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -42,30 +31,9 @@ class Cell:
     after: Cell | None
 
 
-_MEMORY: ContextVar[_Memory] = ContextVar("_MEMORY")
-
-
-@contextmanager
-def cache_results() -> Iterator[None]:
-    """Cache results within the `with` block, in which no model may change."""
-    token = _MEMORY.set(_Memory())
-    try:
-        with keeping_facts():
-            yield
-    finally:
-        _MEMORY.reset(token)
-
-
-def _memory() -> _Memory:
-    return _MEMORY.get(None) or _Memory()
-
-
 def instances(base: rsc.Base) -> Instances:
     """Return the instances of a robot or library."""
-    memory = _memory()
-    if base not in memory.instances:
-        memory.instances[base] = Instances(base, memory.resolved)
-    return memory.instances[base]
+    return cached((Instances, base), lambda: Instances(base, cached("resolved", dict)))
 
 
 @dataclass(frozen=True)
@@ -104,7 +72,7 @@ def meanings(base: rsc.Base) -> Iterator[Meaning]:
 
 def imports(base: rsc.Base) -> list[tuple[rsc.Component, rsc.Library]]:
     """Return each imported component with its library, in the order of the text, without unresolved libraries."""
-    return fact(imported_components, base)
+    return cached((imported_components, base), lambda: imported_components(base))
 
 
 def anything(_: rsc.Base) -> bool:
@@ -118,8 +86,12 @@ def reachable(base: rsc.Base, holds: Holds = anything) -> list[rsc.Library]:
     Each library occurs once, the near ones first. In a chain of imports, the libraries of a base are the next library
     and the libraries of that one. All libraries are visited again only if a base imports several.
     """
-    known = _memory().reachable
+    known: dict[tuple[rsc.Base, Holds], Cell | None] = cached(Cell, dict)
     chain: list[tuple[rsc.Base, rsc.Library]] = []
+
+    def satisfies(library: rsc.Library) -> bool:
+        return cached((holds, library), lambda: holds(library))
+
     cell: Cell | None = None
     current, passed = base, {base}
     while (current, holds) not in known:
@@ -130,11 +102,11 @@ def reachable(base: rsc.Base, holds: Holds = anything) -> list[rsc.Library]:
             passed.add(current)
             continue
         for library in reversed(libraries(current, imports)):
-            cell = Cell(library, cell) if fact(holds, library) else cell
+            cell = Cell(library, cell) if satisfies(library) else cell
         known[current, holds] = cell
     cell = known[current, holds]
     for importing, library in reversed(chain):
-        cell = known[importing, holds] = Cell(library, cell) if fact(holds, library) else cell
+        cell = known[importing, holds] = Cell(library, cell) if satisfies(library) else cell
     return [library for library in dict.fromkeys(_each(cell)) if library is not base]
 
 

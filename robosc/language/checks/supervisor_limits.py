@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
+from robosc.base.cache import cached
 from robosc.language.checks.definitions import unit_of
-from robosc.language.checks.facts import fact
 from robosc.language.checks.libraries import instances, reachable
 from robosc.language.checks.rule import Finding
 from robosc.model import expression as ex
@@ -68,7 +68,7 @@ def supervised_faults(base: rsc.Base, search: Search) -> Iterator[Finding]:
     the supervisor need the element.
     """
     reported = set()
-    result = fact(_cone, base)
+    result = _cone(base)
     of_libraries: set[ex.Located] | None = None
     for fault in search(instances(base), result):
         if of_libraries is None:
@@ -123,11 +123,11 @@ def _fits(assigned: AssignmentPlace) -> bool:
 
 
 def _faults(base: rsc.Base, search: Search) -> Iterator[Fault]:
-    return search(instances(base), fact(_cone, base))
+    return search(instances(base), _cone(base))
 
 
 def _cone(base: rsc.Base) -> ConeOfInfluence:
-    return cone_of_influence(instances(base))
+    return cached((cone_of_influence, base), lambda: cone_of_influence(instances(base)))
 
 
 def _reference(base: rsc.Base, reason: NeedReason, result: ConeOfInfluence) -> rsc.Access | rsc.ErrorReason:

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from robosc.base.cache import cached
 from robosc.base.diagnostics import Diagnostic, ModelError, Severity
-from robosc.m2m.memo import once
 from robosc.m2m.sct_to_cif.linear import LARGEST, Unsupported, bounds, shift
 from robosc.m2m.sct_to_cif.lower_arithmetic import Lowering
 from robosc.model import expression as ex
@@ -42,7 +42,7 @@ def transform(model: sct.SupervisoryControlModel) -> LoweredModel:
     Precondition: the model does not come from CIF. Raises ModelError with findings of the rule `cif` if numbers exceed
     32 bits, or if expressions would need too many cases.
     """
-    return once((transform, model), lambda: _SctToCif(model).run())
+    return cached((transform, model), lambda: _SctToCif(model).run())
 
 
 class _SctToCif:

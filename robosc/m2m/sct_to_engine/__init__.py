@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.m2m.memo import once
+from robosc.base.cache import cached
 from robosc.m2m.sct_to_engine.build_expressions import as_denial, build_expression, build_value
 from robosc.m2m.sct_to_engine.collect_events import collect_edges, collect_events, collect_groups, collect_sources
 from robosc.m2m.sct_to_engine.combine_guards import combine_guards
@@ -41,7 +41,7 @@ def transform(model: sct.SupervisoryControlModel, polled: int | None = None) -> 
     ValueError if the model has no supervisor, or a supervisor without a guard for a controllable event.
     """
     polled = POLLED if polled is None else polled
-    return once((transform, model, polled), lambda: _transform(model, polled))
+    return cached((transform, model, polled), lambda: _transform(model, polled))
 
 
 def lowering(model: sct.SupervisoryControlModel) -> Lowering:

@@ -8,8 +8,8 @@ from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from robosc.base.cache import cached
 from robosc.engine import Settings as LoopSettings
-from robosc.engine import once
 from robosc.model.semantics.roles import event_name
 from robosc.run.node_tests.coverage import Coverage, Watcher
 from robosc.run.node_tests.drive import Drive, DrivenController
@@ -78,13 +78,13 @@ class _OtherwiseError(Exception):
 def tour_of(graph: rosgraph.RosGraph, configuration: Configuration, distribution: RosDistribution) -> Tour:
     """Return the tour of a controller on one ROS.
 
-    Within `robosc.engine.cache_transformations`, both versions of ROS share a plan if their stimuli are equal.
+    Within `robosc.base.cache.cache_results`, both versions of ROS share a plan if their stimuli are equal.
     """
 
     def anew() -> Tour:
         return Tour(graph, configuration, distribution)
 
-    first = once((Tour, graph), anew)
+    first = cached((Tour, graph), anew)
     if first.is_for(configuration, distribution):
         return first
     with suppress(_OtherwiseError):

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import pytest
 from hypothesis import given, settings
 
-from robosc.m2m.memo import cache_transformations
+from robosc.base.cache import cache_results
 from robosc.m2m.sct_to_cif import transform
 from robosc.model import expression as ex
 from robosc.model import sct, xmi
@@ -77,5 +77,5 @@ def test_a_variable_takes_the_place_of_locations_where_data_is_chosen() -> None:
 
 def test_a_model_is_lowered_once() -> None:
     given = model([plant("p", {"l": [edge("e")]}, controllable=["e"])])
-    with cache_transformations():
+    with cache_results():
         assert transform(given) is transform(given)

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 import robosc
 from robosc.analysis.supervise import supervise
+from robosc.base.cache import cache_results
 from robosc.base.diagnostics import ModelError
 from robosc.engine import Engine
-from robosc.m2m.memo import cache_transformations
 from robosc.m2m.sct_to_engine import transform
 from robosc.model import engine, sct, xmi
 from robosc.model import expression as ex
@@ -470,9 +470,9 @@ def test_engine_models_can_be_saved_and_are_the_same_each_time(made: sct.Supervi
 
 def test_a_model_is_transformed_once_while_it_is_remembered() -> None:
     made = machine()
-    with cache_transformations():
+    with cache_results():
         first = transform(made)
-        with cache_transformations():
+        with cache_results():
             assert transform(made) is first
         assert transform(made) is first
     assert transform(made) is not transform(made)

@@ -17,7 +17,7 @@ from jsonschema import Draft202012Validator
 import robosc
 from robosc.base.files.resources import locate
 from robosc.base.ros_types import RosTypes
-from robosc.engine import Engine, cache_transformations
+from robosc.engine import Engine, cache_results
 from robosc.language import configuration as config
 from robosc.model import expression as ex
 from robosc.model.semantics.edges import edges_from
@@ -176,7 +176,7 @@ def test_a_tour_with_other_settings_is_another_one() -> None:
     graph, configuration = robot_of("porter")
     slower = configuration.control_loop.model_copy(update={"period_ms": 350})
     other = configuration.model_copy(update={"control_loop": slower})
-    with cache_transformations():
+    with cache_results():
         first, second = (trace_test(graph, asked, 2).files for asked in (configuration, other))
     assert first != second
     assert second == trace_test(graph, other, 2).files

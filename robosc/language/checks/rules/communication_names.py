@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from robosc.base.cache import cached
 from robosc.base.diagnostics import Severity
 from robosc.language.checks.definitions import of_kind
 from robosc.language.checks.edits import Choice, Insertion, Removal, Renaming, Replacement, Together, part_of
-from robosc.language.checks.facts import fact
 from robosc.language.checks.libraries import instances, reachable
 from robosc.language.checks.rule import Finding, rule
 from robosc.model import robosc as rsc
@@ -31,7 +31,7 @@ def unique_communication(base: rsc.Base) -> Iterator[Finding]:
         first = firsts.setdefault(second.communication.name, second)
         pair = {first.communication, second.communication}
         # If both are in one library, the finding is in that library.
-        if len(pair) == 2 and not any(pair <= fact(_communications, library) for library in reachable(base)):
+        if len(pair) == 2 and not any(pair <= _communications(library) for library in reachable(base)):
             own = second.instance.unit is base
             yield Finding(
                 second.communication if own else second.instance.component,
@@ -42,7 +42,7 @@ def unique_communication(base: rsc.Base) -> Iterator[Finding]:
 
 
 def _communications(base: rsc.Base) -> set[rsc.CommunicationType]:
-    return {port.communication for port in instances(base).ports()}
+    return cached((_communications, base), lambda: {port.communication for port in instances(base).ports()})
 
 
 def _describe(port: PortInstance) -> str:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from robosc.base.cache import cached
 from robosc.language.checks.definitions import of_kind, unit_of
 from robosc.language.checks.edits import Insertion, Removal, Renaming, part_of
-from robosc.language.checks.facts import fact
 from robosc.language.checks.libraries import imports, instances, reachable
 from robosc.language.checks.rule import Finding, rule
 from robosc.model import robosc as rsc
@@ -64,7 +64,7 @@ def enum_state_overlap(base: rsc.Base) -> Iterator[Finding]:
         unit = unit_of(value)
         for instance, state in named.get(value.name, ()):
             # If a library with its imports contains both, the finding is in the library.
-            if any((value, state) in fact(_overlaps, library) for library in reachable(base)):
+            if any((value, state) in _overlaps(library) for library in reachable(base)):
                 continue
             place = value if unit is base else state if instance.unit is base else _import(base, instance, unit)
             if place not in reported:
@@ -78,8 +78,11 @@ def enum_state_overlap(base: rsc.Base) -> Iterator[Finding]:
 
 
 def _overlaps(library: rsc.Library) -> set[tuple[rsc.EnumValue, rsc.State]]:
-    states = [state for instance in instances(library) for state in instance.states]
-    return {(value, state) for value in _reachable_values(library) for state in states if value.name == state.name}
+    def compute() -> set[tuple[rsc.EnumValue, rsc.State]]:
+        states = [state for instance in instances(library) for state in instance.states]
+        return {(value, state) for value in _reachable_values(library) for state in states if value.name == state.name}
+
+    return cached((_overlaps, library), compute)
 
 
 def _import(base: rsc.Base, instance: Instance, unit: rsc.Base) -> rsc.Component:

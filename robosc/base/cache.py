@@ -1,4 +1,4 @@
-"""Cache of transformations, valid while a model does not change."""
+"""Cache of results, valid while no model changes."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ if TYPE_CHECKING:
 
 _Result = TypeVar("_Result")
 
-#: Results by key while `cache_transformations` is active, else None.
-_cache: ContextVar[dict[object, Any] | None] = ContextVar("made", default=None)
+#: Results by key while `cache_results` is active, else None.
+_cache: ContextVar[dict[object, Any] | None] = ContextVar("_cache", default=None)
 
 
 @contextmanager
-def cache_transformations() -> Iterator[None]:
-    """Cache the results of `once`, so that each model is transformed once.
+def cache_results() -> Iterator[None]:
+    """Cache the results of `cached`, so that each is computed once.
 
     Models must not change in this context. A nested context shares the cache of the outer one.
     """
@@ -29,12 +29,12 @@ def cache_transformations() -> Iterator[None]:
         _cache.reset(before)
 
 
-def once(key: object, make: Callable[[], _Result]) -> _Result:
-    """Return the result of `make()`. Within `cache_transformations`, return the cached result of an equal `key`."""
+def cached(key: object, compute: Callable[[], _Result]) -> _Result:
+    """Return the result of `compute()`. Within `cache_results`, return the cached result of an equal `key`."""
     known = _cache.get()
     if known is None:
-        return make()
+        return compute()
     if key not in known:
-        known[key] = make()
+        known[key] = compute()
     result: _Result = known[key]
     return result
