@@ -63,6 +63,11 @@ def findings_of(model: sct.SupervisoryControlModel, observations: Observations) 
             *map(words_for.provide_gap, observations.provide_gaps),
             *map(words_for.shared_topic_conflict, observations.shared_topic_conflicts),
             *map(words_for.unrestricted_call, observations.unrestricted_calls),
+            *(
+                words_for.unused_assumption(plant)
+                for plant in observations.unused_assumptions
+                if not _of_library(plant, model)
+            ),
         ]
     )
 
@@ -267,6 +272,16 @@ class _Findings:
             f"`{action}` is {_DONE[plant_of(event).kind]} again and again, as soon as it has ended: no requirement "
             "restricts it, and no component waits for its request",
             f"add `requirement {action} needs ...`, or `on request to {action}` in the states that allow it",
+        )
+
+    @staticmethod
+    def unused_assumption(plant: sct.Plant) -> Diagnostic:
+        return _finding(
+            plant,
+            "assumption-unused",
+            f"`{plant.text}` excludes nothing: wherever its events can come in the supervised robot, its condition"
+            " holds",
+            "remove it, or correct its condition",
         )
 
     def unreachable_state(self, observed: UnreachableState) -> Diagnostic:

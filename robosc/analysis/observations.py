@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from robosc.synthesis.bdd import Diagram
     from robosc.synthesis.encoding import Element
     from robosc.synthesis.guards import Permission
+    from robosc.synthesis.relation import EventRelation
 
 _Key = TypeVar("_Key", sct.Event, sct.Plant)
 _CALLS = (sct.PlantKind.service, sct.PlantKind.action)
@@ -186,7 +187,7 @@ class Observations:
     """All observations of a supervisor, each kind in the order of the model.
 
     `unrestricted_calls` are triggers of services and actions that can happen, have no requirement, and involve no other
-    plant than their own. `counterexamples` explain events that synthesis restricts; large models may lack some of them.
+    plant than their own. `unused_assumptions` are those that none of their events could violate. `counterexamples` explain events that synthesis restricts; large models may lack some of them.
     """
 
     never_enabled: tuple[NeverEnabled, ...]
@@ -198,6 +199,7 @@ class Observations:
     shared_topic_conflicts: tuple[SharedTopicConflict, ...]
     unrestricted_calls: tuple[sct.Event, ...]
     unreachable_states: tuple[UnreachableState, ...]
+    unused_assumptions: tuple[sct.Plant, ...]
     counterexamples: Mapping[sct.Event, BlockingCounterexample]
 
 
@@ -222,6 +224,7 @@ class Observer:
             tuple(self._shared_topic_conflicts()),
             tuple(self._unrestricted_calls()),
             tuple(self._unreachable_states()),
+            tuple(self._unused_assumptions()),
             dict(self._affordable_counterexamples()),
         )
 
@@ -419,6 +422,19 @@ class Observer:
                     )
                     hindrances = [self._hindrance(edge, states[edge.eContainer()]) for edge in leading]
                     yield UnreachableState(location, tuple(hindrances))
+
+    def _unused_assumptions(self) -> Iterator[sct.Plant]:
+        system = self._system
+        for assumption in system.model.plants:
+            if assumption.kind == sct.PlantKind.assumption:
+                events = dict.fromkeys(edge.event for location in assumption.locations for edge in location.edges)
+                if not any(self._could_violate(system.relations[event], assumption).satisfiable() for event in events):
+                    yield assumption
+
+    def _could_violate(self, relation: EventRelation, assumption: sct.Plant) -> Diagram:
+        """Return the controlled states in which all plants but the assumption allow an event."""
+        others = [enabled for plant, enabled in relation.enabled_by.items() if plant is not assumption]
+        return self._system.controlled & ~relation.enabled_by[assumption] & self._system.diagrams.all_of(others)
 
     def _hindrance(self, edge: sct.Edge, here: Diagram) -> Hindrance:
         """Return why an edge is never taken in the controlled states in which its plant is in its location."""

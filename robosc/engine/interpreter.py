@@ -21,6 +21,7 @@ class Blocked(StrEnum):
     """Cause that blocks an event. If there are several, the first of these."""
 
     PLANT = "plant"
+    ASSUMPTION = "assumption"
     REQUIREMENT = "requirement"
     SYNTHESIS = "synthesis"
 
@@ -106,7 +107,8 @@ class Engine:
         """Return the parts of the state that determine whether the event is enabled, and the reasons that block it."""
         executed = self._by_name[event]
         conditions = [term.condition for term in executed.guard.terms]
-        parts = [executed.guard.plants, executed.guard.requirement, executed.guard.synthesis]
+        guard = executed.guard
+        parts = [guard.plants, guard.assumption, guard.requirement, guard.synthesis]
         parts += [reason.condition for reason in executed.reasons]
         conditions += [part for part in parts if part is not None]
         variables = {part.variable for part in all_inside(conditions) if isinstance(part, engine.VariableReference)}
@@ -118,7 +120,8 @@ class Engine:
             return None
         if event not in self._reasons:
             guard = self._by_name[event].guard
-            conditions = zip(Blocked, (guard.plants, guard.requirement, guard.synthesis), strict=True)
+            parts = (guard.plants, guard.assumption, guard.requirement, guard.synthesis)
+            conditions = zip(Blocked, parts, strict=True)
             self._reasons[event] = [(reason, self._compile(part)) for reason, part in conditions if part is not None]
         return next(reason for reason, holds in self._reasons[event] if not holds(self._cells, ()))
 
@@ -131,6 +134,16 @@ class Engine:
                 if reason.requirement is not None and reason.condition is not None
             ]
         return [requirement for requirement, forbids in self._failing[event] if forbids()]
+
+    def violated_assumptions(self, event: str) -> list[sct.Plant]:
+        """Return the assumptions that an event of the robot would violate in this state; none if it is not possible."""
+        if self.blocked_by(event) is not Blocked.ASSUMPTION:
+            return []
+        return [
+            reason.assumption
+            for reason in self._by_name[event].reasons
+            if reason.assumption is not None and reason.condition is not None and self.condition(reason.condition)()
+        ]
 
     def enabled(self, event: str, state: State | None = None) -> bool:
         """Return whether the event is enabled in this state, or in another state of this engine."""

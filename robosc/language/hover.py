@@ -191,7 +191,7 @@ def _meaning(reading: Reading, file: File, element: Any) -> Iterator[str]:  # no
             yield f"Value of enum `{rule.eContainer().name}`: {when}."
         case rsc.Component() if element.parameters:
             yield "Template: components use it with `is` or `import`."
-        case rsc.Requirement() | rsc.Property():
+        case rsc.StatedDefinition():
             yield _statements(file, element)
 
 
@@ -243,11 +243,11 @@ def _communication(file: File, communication: rsc.CommunicationType) -> Iterator
 
 
 def _restricted(reading: Reading, communication: rsc.CommunicationType) -> Iterator[str]:
-    """List the requirements that mention a communication."""
+    """List the requirements and assumptions that mention a communication."""
     texts: dict[Any, str] = {}
     for file, name in _uses(reading, communication):
         around = name.user
-        while around is not None and not isinstance(around, rsc.Requirement):
+        while around is not None and not isinstance(around, rsc.Requirement | rsc.Assumption):
             around = around.eContainer()
         if around is not None:
             where = f"line {file.text.span(name.start, name.end).line}"
@@ -259,7 +259,7 @@ def _restricted(reading: Reading, communication: rsc.CommunicationType) -> Itera
 
 
 def _statements(file: File, element: Any) -> str:
-    """Return the demand of a requirement or property as a sentence."""
+    """Return the demand of a requirement, property or assumption as a sentence."""
     target = _source(file, getattr(element, "target", None)).strip("{} ")
     condition = _source(file, getattr(element, "condition", None))
     anchor = _source(file, getattr(element, "anchor", None))
@@ -279,6 +279,8 @@ def _statements(file: File, element: Any) -> str:
             return f"`{target}` happens at most {bound} times until `{anchor}` happens again."
         case rsc.AutomatonRequirement():
             return "An event that it names may happen only if its current state has a transition for it."
+        case rsc.Assumption():
+            return f"The robot causes `{target}` only while `{condition}` holds. The node checks this."
         case rsc.InvariantProperty():
             never = element.kind == rsc.InvariantKind.never
             return f"`verify` proves that `{condition}` {'never' if never else 'always'} holds, or refutes it."

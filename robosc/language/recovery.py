@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 _LEAVE_OUT = "leave it out"
 #: First keywords of items that declare no name usable elsewhere.
-_DECLARING_NOTHING = first_words("Requirement", "ProvideStatement", "Transition")
+_DECLARING_NOTHING = first_words("Requirement", "Assumption", "ProvideStatement", "Transition")
 
 
 def parse_file(text: Text) -> File:

@@ -35,8 +35,7 @@ _CLASSES: dict[type, str] = {
     rsc.ObjectDataType: "struct",
     rsc.ObjectProperty: "property",
     rsc.Function: "function",
-    rsc.Requirement: "property",
-    rsc.Property: "property",
+    rsc.StatedDefinition: "property",
 }
 CLASSES = (*dict.fromkeys(_CLASSES.values()), "type", "keyword", "comment", "string", "number", "operator")
 _READONLY = (rsc.Constant, rsc.Condition, rsc.FormalParameter, rsc.EnumValue)

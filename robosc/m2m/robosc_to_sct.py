@@ -19,6 +19,7 @@ from robosc.model.semantics.communication import (
     READY,
     WAITING,
     events,
+    port_event_of,
 )
 from robosc.model.semantics.cone_of_influence import cone_of_influence, guard_of
 from robosc.model.semantics.durations import UNITS, bounds, milliseconds, set_milliseconds, set_on_robot
@@ -113,6 +114,8 @@ class _RoboscToSct:
                 self.edges(instance)
         for port in self.instances.ports():
             self.data_plant(port)
+        for number, assumption in enumerate(self.instances.statements(robosc.Assumption), start=1):
+            self.assumption(assumption, number)
         self.requirements()
         return self.model, self.trace
 
@@ -343,6 +346,30 @@ class _RoboscToSct:
             return ex.BooleanLiteral(value=False)
         return conjunction(ex.Negation(operand=condition) for condition in conditions if condition is not None)
 
+    # Assumptions
+
+    def assumption(self, statement: Statement[robosc.Assumption], number: int) -> None:
+        """Add the plant of an assumption: one location, where its events are possible only if the condition holds."""
+        assumption, within, name = statement.element, statement.within, _statement_name(statement)
+        plant = self.plant(
+            f"assumption_{name.replace('.', '_') if name else number}",
+            sct.PlantKind.assumption,
+            name,
+            assumption.source,
+        )
+        readable = self.print(self.instances.expanded(assumption.condition, within, readable=True))
+        plant.text = f"{self.heading(statement)} {self.events_said(assumption.target, statement)} needs {readable}"
+        self.trace.origins[plant] = assumption
+        location = _location(plant, "holding", initial=True, marked=True)
+        for event in dict.fromkeys(self.named_event(event, statement) for event in assumption.target.events):
+            _edge(location, event, location).guard = self.expressions(assumption.condition, within)
+
+    def named_event(self, reference: robosc.EventReference, statement: Statement[robosc.Assumption]) -> sct.Event:
+        port, named = self.instances.port(reference.communicationType, statement.within), port_event_of(reference)
+        assert port is not None
+        assert named is not None
+        return self.trace.event(port, named.kind)
+
     # Requirements
 
     def requirements(self) -> None:
@@ -437,11 +464,11 @@ class _RoboscToSct:
                 return f"at most {bound} {events} since {self.event_said(count.anchor, statement)}"
         return "automaton"
 
-    def events_said(self, events: robosc.EventSet, statement: Statement[robosc.Requirement]) -> str:
+    def events_said(self, events: robosc.EventSet, statement: Statement[_Definition]) -> str:
         texts = [self.event_said(event, statement) for event in events.events]
         return texts[0] if len(texts) == 1 else f"{{ {', '.join(texts)} }}"
 
-    def event_said(self, reference: robosc.EventReference, statement: Statement[robosc.Requirement]) -> str:
+    def event_said(self, reference: robosc.EventReference, statement: Statement[_Definition]) -> str:
         port = self.instances.port(reference.communicationType, statement.within)
         assert port is not None
         if not isinstance(reference, robosc.NamedEvent):
@@ -484,11 +511,12 @@ class _RoboscToSct:
         self.trace.origins[claim] = claimed
 
     def heading(self, statement: Statement[_Definition]) -> str:
-        """Return the first words of a requirement's or property's text: its name and its own text."""
+        """Return the first words of the text of a requirement, property or assumption: its name and its own text."""
         text = statement.element.text
         words = [_statement_name(statement), None if text is None else self.print(ex.StringLiteral(value=text))]
         named = " ".join(filter(None, words))
-        word = "property" if isinstance(statement.element, robosc.Property) else "requirement"
+        words_by_kind = ((robosc.Property, "property"), (robosc.Assumption, "assume"), (object, "requirement"))
+        word = next(word for kind, word in words_by_kind if isinstance(statement.element, kind))
         return f"{word} {named}:" if named else word
 
     def cancelling(self, port: PortInstance, requirements: list[Statement[robosc.CommunicationRequirement]]) -> None:
@@ -520,7 +548,7 @@ class _RoboscToSct:
 
 
 def _statement_name(statement: Statement[_Definition]) -> str | None:
-    """Return the name of a requirement or property, with its component if it is inside one."""
+    """Return the name of a requirement, property or assumption, with its component if it is inside one."""
     name = statement.element.name
     return f"{statement.within.name}.{name}" if name and statement.within else name
 

@@ -139,10 +139,11 @@ class Reason:
     text: str
     location: StateVariable | None
     requirement: sct.Requirement | None
+    assumption: sct.Plant | None
     def eContainer(self) -> Any: ...
     @property
     def eClass(self) -> Any: ...
-    def __init__(self, *, kind: Origin | None = ..., condition: expression.Expression | None = ..., text: str | None = ..., location: StateVariable | None = ..., requirement: sct.Requirement | None = ...) -> None: ...
+    def __init__(self, *, kind: Origin | None = ..., condition: expression.Expression | None = ..., text: str | None = ..., location: StateVariable | None = ..., requirement: sct.Requirement | None = ..., assumption: sct.Plant | None = ...) -> None: ...
 
 class Role:
     """cancel, trigger: the control loop sends the event, cancels first; silent: the control loop performs silent events until none is enabled; data: selects the data of a trigger; incoming: the robot causes the event, and the caller performs it; timeout: a timer expires."""
@@ -158,12 +159,13 @@ class Guard:
     """The conjunction of all terms, the condition of an event. No term is constant, except the single term `false` of a guard that never holds. No two terms are equal."""
     terms: MutableSequence[Term]
     plants: expression.Expression | None
+    assumption: expression.Expression | None
     requirement: expression.Expression | None
     synthesis: expression.Expression | None
     def eContainer(self) -> Any: ...
     @property
     def eClass(self) -> Any: ...
-    def __init__(self, *, terms: Iterable[Term] = ..., plants: expression.Expression | None = ..., requirement: expression.Expression | None = ..., synthesis: expression.Expression | None = ...) -> None: ...
+    def __init__(self, *, terms: Iterable[Term] = ..., plants: expression.Expression | None = ..., assumption: expression.Expression | None = ..., requirement: expression.Expression | None = ..., synthesis: expression.Expression | None = ...) -> None: ...
 
 class Term:
     """A conjunct of a guard."""
@@ -175,11 +177,12 @@ class Term:
     def __init__(self, *, condition: expression.Expression | None = ..., origins: Iterable[Origin] = ...) -> None: ...
 
 class Origin:
-    """plants: without the term a plant has no edge for the event; requirement: the requirements; synthesis: the restriction that synthesis added."""
+    """plants: without the term a plant has no edge for the event; requirement: the requirements; synthesis: the restriction that synthesis added; assumption: the assumptions about the robot."""
     name: str
     plants: ClassVar[Origin]
     requirement: ClassVar[Origin]
     synthesis: ClassVar[Origin]
+    assumption: ClassVar[Origin]
 
 class Effect:
     """The changes of an event. They are simultaneous: each value is that before the event. A target can execute the steps in sequence, because no step reads a variable after its assignment. Exceptions are the variables in `copied`: references with `before` read a copy."""

@@ -21,7 +21,7 @@ class Library(Base):
     def __init__(self, *, file: str | None = ..., definitions: Iterable[Definition] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Definition(expression.Located):
-    """An element directly inside a robot or a library. Only robots contain requirements and provide statements."""
+    """An element directly inside a robot or a library. Only robots contain requirements, properties and provide statements."""
     def __init__(self, *, source: Place | None = ...) -> None: ...
 
 class AccessibleItem(expression.NamedElement):
@@ -394,7 +394,7 @@ class IndexSegment(AccessSegment):
     def __init__(self, *, index: int | None = ..., first: expression.Expression | None = ..., last: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
 class StatedDefinition(Definition, ComponentDefinition):
-    """A requirement or a property of the supervised robot, enforced or proven."""
+    """A requirement, a property or an assumption: enforced, proven, or checked while the robot runs."""
     name: str | None
     text: str | None
     def __init__(self, *, name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
@@ -495,6 +495,12 @@ class NeedsRequirement(CommunicationRequirement):
 class DisablesRequirement(CommunicationRequirement):
     """The communication may not start if the condition holds."""
     def __init__(self, *, target: CommunicationTypeSet | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+
+class Assumption(StatedDefinition):
+    """A condition that the robot keeps by itself: its events come only while the condition holds. The node checks it."""
+    target: EventSet
+    condition: expression.Expression
+    def __init__(self, *, target: EventSet | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
 
 class ProvideStatement(Definition, ComponentDefinition):
     """The data of a command (thesis figure 4.12)."""

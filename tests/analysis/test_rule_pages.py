@@ -22,6 +22,7 @@ RULES = {
     "shared-topic-conflict": Severity.WARNING,
     "unrestricted-call": Severity.WARNING,
     "unreachable-state": Severity.WARNING,
+    "assumption-unused": Severity.WARNING,
 }
 
 

@@ -113,7 +113,7 @@ def controllability(system: GuardedSystem) -> Verdict:
 def input_enabledness(system: GuardedSystem) -> Verdict:
     """Check that every component accepts the answers, errors, feedback and cancels that a communication allows.
 
-    Components synchronize with communications. A component without an edge for such an event would block the robot in
+    Components synchronize with communications. An assumption may block its events: the node then rejects them. A component without an edge for such an event would block the robot in
     the model, although nothing blocks it in reality. The term is that of I/O automata (Lynch, Tuttle: An introduction
     to input/output automata, CWI Quarterly 1989).
     """
@@ -126,6 +126,7 @@ def input_enabledness(system: GuardedSystem) -> Verdict:
         (relation.event, plant): system.controlled & relation.enabled_by[plant_of(relation.event)] & ~enabled
         for relation in inputs
         for plant, enabled in relation.enabled_by.items()
+        if plant.kind != sct.PlantKind.assumption
     }
 
     def explanation(blocked: tuple[sct.Event, sct.Plant], path: Path) -> str:

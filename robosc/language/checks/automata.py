@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
 
 def named_events(base: rsc.Base) -> Iterator[rsc.EventReference]:
-    """Yield the events that orders, counts and automata name."""
-    for requirement in statements(rsc.Requirement, base):
+    """Yield the events that orders, counts, automata and assumptions name."""
+    for requirement in (*statements(rsc.Requirement, base), *statements(rsc.Assumption, base)):
         if not isinstance(requirement, rsc.CommunicationRequirement | rsc.StateInvariant):
             yield from of_kind(rsc.EventReference, (element for _, element in tree(requirement)))
 

@@ -39,6 +39,7 @@ CLAUSES: dict[str, tuple[set[str], set[str]]] = {
     "TimedTransition": ({"without", "do", "goto"}, set()),
     "EnumTransformationRule": ({"->"}, set()),
     "NeedsRequirement": (set(), {"needs"}),
+    "Assumption": (set(), {"needs"}),
     "DisablesRequirement": ({"disables"}, set()),
     "OrderRequirement": ({"after"}, set()),
     "CountRequirement": ({"since"}, set()),
@@ -54,7 +55,7 @@ CLAUSES: dict[str, tuple[set[str], set[str]]] = {
     "Function": (set(), {"="}),
 }
 #: Rules whose clauses break independently, because a clause may begin with a list that breaks.
-_LOOSE = {"NeedsRequirement", "ProvideStatement"}
+_LOOSE = {"NeedsRequirement", "Assumption", "ProvideStatement"}
 
 
 def layout(text: str, tree: Node) -> Document:

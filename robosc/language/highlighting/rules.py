@@ -70,7 +70,7 @@ RESERVED: Mapping[Kind, tuple[str, ...]] = {
 }
 #: Words that are names unless they begin a construct.
 IN_CONTEXT: Mapping[Kind, tuple[str, ...]] = {
-    Kind.DECLARATION: ("automaton", "condition", "constant", "function", "is", "parameter", "property"),
+    Kind.DECLARATION: ("assume", "automaton", "condition", "constant", "function", "is", "parameter", "property"),
     Kind.CONTROL: (*("after", "always", "each", "else", "in", "never", "reachable", "since", "then", "without"),),
 }
 SEND = ("send", "change")
@@ -119,7 +119,7 @@ def rules() -> Iterator[HighlightRule]:
     yield HighlightRule(
         rf"{_any(('constant', 'parameter', 'condition', 'function'))}{blank}{name}(?=\s*[:=(])", declared
     )
-    yield HighlightRule(rf"{_any(('requirement', 'property'))}{blank}{name}(?=\s*[:\"'])", declared)
+    yield HighlightRule(rf"{_any(('requirement', 'property', 'assume'))}{blank}{name}(?=\s*[:\"'])", declared)
     yield HighlightRule(rf"(?<![\w^])(goto){blank}{name}", (Kind.CONTROL, Kind.BLANK, Kind.NAME))
     yield HighlightRule(rf"(->)(\s*){name}", (Kind.OPERATOR, Kind.BLANK, Kind.NAME))
     yield HighlightRule(rf"(?<![\w^])(in){blank}(value)\b", (Kind.CONTROL, Kind.BLANK, Kind.DATA))

@@ -97,7 +97,9 @@ class _SctToCif:
 
     def _plant(self, plant: sct.Plant) -> sct.Plant:
         """Lower a plant without its edges."""
-        self._copies[plant] = lowered = sct.Plant(name=plant.name, kind=plant.kind, origin=plant.origin)
+        self._copies[plant] = lowered = sct.Plant(
+            name=plant.name, kind=plant.kind, origin=plant.origin, text=plant.text
+        )
         lowered.inputs.extend(map(self._cell, plant.inputs))
         lowered.variables.extend(map(self._cell, plant.variables))
         for event in plant.events:
@@ -112,7 +114,8 @@ class _SctToCif:
         if _is_numbered(plant):
             self._number_locations(plant, lowered)
             return lowered
-        nameless = plant.kind == sct.PlantKind.message and len(plant.locations) == 1
+        stateless = (sct.PlantKind.message, sct.PlantKind.assumption)
+        nameless = plant.kind in stateless and len(plant.locations) == 1
         for location in plant.locations:
             name = "" if nameless and location not in self._referred else location.name
             self._copies[location] = sct.Location(name=name, initial=location.initial, marked=location.marked)

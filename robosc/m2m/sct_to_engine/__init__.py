@@ -139,10 +139,13 @@ def _guard(guard: GuardTerms, shared: SharedTerms) -> engine.Guard:
         only_synthesis = origins == [engine.Origin.synthesis]
         return engine.Term(condition=as_denial(condition) if only_synthesis else condition, origins=origins)
 
-    plants, requirement, synthesis = (None if part.constant == 1 else build_expression(part) for _, part in guard.parts)
+    plants, assumption, requirement, synthesis = (
+        None if part.constant == 1 else build_expression(part) for _, part in guard.parts
+    )
     return engine.Guard(
         terms=[build(term, origins) for term, origins in shared.ask_for(guard).items()],
         plants=plants,
+        assumption=assumption,
         requirement=requirement,
         synthesis=synthesis,
     )

@@ -22,13 +22,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class GuardTerms:
-    """The condition under which an event can happen: its three parts, and their conjunction.
+    """The condition under which an event can happen: its four parts, and their conjunction.
 
-    `by_plant` holds the condition that a plant has an edge for the event; `plants` is the conjunction of these.
+    `by_plant` holds the condition that a plant has an edge for the event. `assumption` is the conjunction of these for
+    assumptions, and `plants` for the other plants.
     """
 
     by_plant: Mapping[sct.Plant, Term]
     plants: Term
+    assumption: Term
     requirement: Term
     synthesis: Term
     whole: Term
@@ -36,8 +38,12 @@ class GuardTerms:
     @property
     def parts(self) -> list[tuple[engine.Origin, Term]]:
         """The parts with their origins."""
-        kinds = (engine.Origin.plants, engine.Origin.requirement, engine.Origin.synthesis)
-        return list(zip(kinds, (self.plants, self.requirement, self.synthesis), strict=True))
+        return [
+            (engine.Origin.plants, self.plants),
+            (engine.Origin.assumption, self.assumption),
+            (engine.Origin.requirement, self.requirement),
+            (engine.Origin.synthesis, self.synthesis),
+        ]
 
 
 def combine_guards(
@@ -50,8 +56,11 @@ def combine_guards(
     for event, by_plant in edges.items():
         guard = supervised.get(event)
         possible = {plant: _possible(plant, taken, lower) for plant, taken in by_plant.items()}
+        assumed = [term for plant, term in possible.items() if plant.kind == sct.PlantKind.assumption]
+        others = [term for plant, term in possible.items() if plant.kind != sct.PlantKind.assumption]
         parts = (
-            lower.terms.junction(engine.And, possible.values()),
+            lower.terms.junction(engine.And, others),
+            lower.terms.junction(engine.And, assumed),
             lower(guard.requirement if guard else None),
             lower(guard.synthesis if guard else None),
         )

@@ -24,7 +24,7 @@ def name_reasons(
     guards: Mapping[sct.Event, GuardTerms],
     lower: Lowering,
 ) -> None:
-    """Set `reasons` of the events: requirements for all; plants and synthesis only for commands."""
+    """Set `reasons` of the events: requirements and assumptions for all; plants and synthesis only for commands."""
     assert model.supervisor is not None
     for requirement in model.requirements:
         forbidden = lower(requirement.condition, positive=requirement.kind == sct.RequirementKind.disables)
@@ -34,10 +34,20 @@ def name_reasons(
             events[requirement.event].reasons.append(reason)
     explained = {guard.event: guard.explanation for guard in model.supervisor.guards if guard.explanation}
     for event, element in events.items():
+        element.reasons.extend(_of_assumptions(guards[event].by_plant, lower))
         if element.role in _COMMANDS:
             element.reasons.extend(_of_plants(guards[event].by_plant, lower))
             if event in explained:
                 element.reasons.append(engine.Reason(kind=engine.Origin.synthesis, text=explained[event]))
+
+
+def _of_assumptions(possible: Mapping[sct.Plant, Term], lower: Lowering) -> Iterator[engine.Reason]:
+    """Return a reason for each assumption that an event can violate."""
+    for plant, holds in possible.items():
+        if plant.kind == sct.PlantKind.assumption and holds.constant != 1:
+            reason = _reason(engine.Origin.assumption, lower.terms.opposite(holds), plant.text or "an assumption")
+            reason.assumption = plant
+            yield reason
 
 
 def _of_plants(possible: Mapping[sct.Plant, Term], lower: Lowering) -> Iterator[engine.Reason]:

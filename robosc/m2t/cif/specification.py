@@ -82,7 +82,8 @@ class Writer:
             yield f"enum {self._names.declared_name(enumeration)} = {literals};"
         for plant in self._model.plants:
             kind = requirement if plant.kind == sct.PlantKind.requirement else "plant"
-            yield from ["", f"{kind} {self._names.declared_name(plant)}:", *self._plant(plant), "end"]
+            described = document([plant.text]) if plant.text else []
+            yield from ["", *described, f"{kind} {self._names.declared_name(plant)}:", *self._plant(plant), "end"]
 
     def _requirements(self) -> Iterator[str]:
         """Return the requirements of the model. Equal conditions on an event appear once."""

@@ -149,7 +149,7 @@ def conditions(instances: Instances) -> Iterator[EvaluatedExpression]:
 def _statement_needs(
     instances: Instances,
 ) -> Iterator[tuple[ex.Expression | None, Instance | None, robosc.RequirementTransition | None]]:
-    """Iterate over the conditions of requirements, properties and statements that provide data."""
+    """Iterate over the conditions of requirements, properties, assumptions and statements that provide data."""
     for automaton in instances.statements(robosc.AutomatonRequirement):
         transitions = (transition for state in automaton.element.states for transition in state.transitions)
         yield from ((transition.guard, automaton.within, transition) for transition in transitions)
@@ -158,7 +158,7 @@ def _statement_needs(
 
 
 def _remembered(instances: Instances) -> Iterator[tuple[ex.Expression | None, Instance | None]]:
-    """Iterate over the conditions of properties, requirements, provided data and invariants.
+    """Iterate over the conditions of properties, requirements, assumptions, provided data and invariants.
 
     They read only the robot's stored state, not the data of an event.
     """
@@ -168,6 +168,8 @@ def _remembered(instances: Instances) -> Iterator[tuple[ex.Expression | None, In
             yield claimed.element.premise, claimed.within
     for required in instances.statements(robosc.CommunicationRequirement):
         yield required.element.condition, required.within
+    for assumed in instances.statements(robosc.Assumption):
+        yield assumed.element.condition, assumed.within
     for provided in (statement for port in instances.ports() for statement in instances.provide_statements(port)):
         yield provided.element.condition, provided.within
     for invariant in instances.statements(robosc.StateInvariant):

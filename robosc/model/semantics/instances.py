@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar
 
 from robosc.model import robosc
 from robosc.model.semantics.expansion import Expansion, constant, constant_value
+from robosc.model.semantics.walks import parts
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -197,9 +198,17 @@ class Instances:
         statements: list[Statement[_Element]] = []
         texts: list[tuple[Iterable[Any], Instance | None]] = [(self.base.definitions, None)]
         texts += ((instance.local.definitions, instance) for instance in self)
+        texts += ((self._library_assumptions(instance), instance) for instance in self)
         for definitions, within in texts:
             statements += [Statement(definition, within) for definition in definitions if isinstance(definition, kind)]
         return statements
+
+    def _library_assumptions(self, instance: Instance) -> list[robosc.Assumption]:
+        """Return the assumptions about an imported component that are outside of components in its library."""
+        if instance.unit is self.base:
+            return []
+        outside = (definition for definition in instance.unit.definitions if isinstance(definition, robosc.Assumption))
+        return [assumption for assumption in outside if instance.definition in assumed_components(assumption, self)]
 
     def of(self, component: robosc.Component) -> list[Instance]:
         """Return the instances that a component's text defines."""
@@ -270,6 +279,17 @@ class Instances:
             if port is not None:
                 provided.setdefault(port, []).append(statement)
         return provided
+
+
+def assumed_components(assumption: robosc.Assumption, instances: Instances) -> list[robosc.Component]:
+    """Return the components that an assumption outside of components names, in the order of its text."""
+    named = [event.communicationType.component for event in assumption.target.events if event.communicationType]
+    named += [
+        access.item if isinstance(access.item, robosc.Component) else access.component
+        for access in parts(instances.expanded(assumption.condition, None))
+        if isinstance(access, robosc.Access)
+    ]
+    return list(dict.fromkeys(component for component in named if component is not None))
 
 
 def imported_components(base: robosc.Base) -> list[tuple[robosc.Component, robosc.Library]]:

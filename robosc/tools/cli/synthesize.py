@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from robosc.analysis.supervise import Diagnosis, EmptySupervisorError, supervise
+from robosc.analysis.blocking_in_words import describe_blocking
+from robosc.analysis.supervise import Diagnosis, EmptySupervisorError, diagnose, supervise
 from robosc.analysis.system import format_count, format_number
 from robosc.analysis.wording import change, quote_requirements
 from robosc.model import sct
 from robosc.model.places import place
+from robosc.model.semantics.naming import enumeration
 from robosc.model.semantics.printing import RobotPrinter, SctPrinter, conjunction
 from robosc.model.semantics.roles import SILENT, event_name, input_values
 from robosc.model.semantics.walks import copy_tree
@@ -41,10 +43,13 @@ _EFFORT = 500_000
 @click.option(
     "--count-inputs", is_flag=True, help="Count states as CIF does: each state once for each value of the inputs."
 )
+@click.option("--without", metavar="NAME", help="Print what changes without the assumption NAME.")
 @memory
 @synthesizer
 @paths
-def command(model: str, as_json: bool, counts: bool, count_inputs: bool, megabytes: int, paths: Paths) -> None:
+def command(
+    model: str, as_json: bool, counts: bool, count_inputs: bool, without: str | None, megabytes: int, paths: Paths
+) -> None:
     """Synthesize the supervisor of a robot and print its states and guards.
 
     MODEL is a .rscd file with a robot, a .cif file, or an .xmi file written by `transform --to xmi`. A guard is the
@@ -55,7 +60,8 @@ def command(model: str, as_json: bool, counts: bool, count_inputs: bool, megabyt
     --json lists all events, including those for outgoing data and those from the robot, and the cost of synthesis.
     Guards too long to read are omitted (`guard` is null), and `guard_nodes` is the size of the decision diagram.
     --counts omits all guards. --count-inputs counts each state once for each value of the robot's inputs, as CIF's
-    tools do. States of .cif files are always counted in this way.
+    tools do. States of .cif files are always counted in this way. --without synthesizes a second time without one
+    assumption, and prints the guards and the requirements for which the result differs.
 
     \b
     Examples:
@@ -66,9 +72,12 @@ def command(model: str, as_json: bool, counts: bool, count_inputs: bool, megabyt
     """
     if counts and chosen_synthesizer() is not None:
         raise click.UsageError("--counts needs RoboSC's own synthesis: remove it or --synthesizer")
+    if without is not None and (counts or chosen_synthesizer() is not None):
+        raise click.UsageError("--without compares guards: remove it, or --counts and --synthesizer")
     with Report(aside=True) as report:
         plants = read_models(model, paths, report, cif=True).sct
         times = input_values(plants) if count_inputs else 1
+        assumption = None if without is None else _assumption(plants, without)
         if counts:
             _count(plants, megabytes << 20, times, as_json=as_json)
             return
@@ -86,9 +95,72 @@ def command(model: str, as_json: bool, counts: bool, count_inputs: bool, megabyt
             if as_json:
                 _show_json(plants, error.synthesis, times)
             raise
+        if assumption is not None:
+            plants.plants.remove(assumption)
+            other = diagnose(plants, memory=megabytes << 20, weigh=True, effort=_EFFORT)
+            changes = _changes(plants, supervision.synthesis, other, times)
+            if as_json:
+                put(json.dumps({"without": without, **changes}, indent=2))
+            else:
+                _show_changes(plants, changes)
+            return
         report.add(supervision.findings)
         show = _show_json if as_json else _show
         show(plants, supervision.synthesis, times)
+
+
+def _assumption(model: sct.SupervisoryControlModel, name: str) -> sct.Plant:
+    """Return the assumption with a name."""
+    known = {plant.origin: plant for plant in model.plants if plant.kind == sct.PlantKind.assumption and plant.origin}
+    if name not in known:
+        some = f"expected {enumeration(known)}" if known else "it names none of its assumptions"
+        raise click.BadParameter(f"{model.name} has no assumption {name!r}: {some}", param_hint="'--without'")
+    return known[name]
+
+
+def _changes(
+    model: sct.SupervisoryControlModel, synthesis: Diagnosis, other: Diagnosis, times: int
+) -> dict[str, Any]:
+    """Return what differs in another synthesis of a model: numbers of states, guards, requirements that matter."""
+    guards, other_guards = ({row["name"]: row for row in _events(model, each)} for each in (synthesis, other))
+    weights, others = ({tuple(row["texts"]): row for row in map(_weight, each.weights)} for each in (synthesis, other))
+    empty = other.supervisor is None
+    return {
+        "empty": empty,
+        "reason": None if other.reason is None else describe_blocking(other.reason),
+        "controlled_states": [each.controlled_states * times for each in (synthesis, other)],
+        "guards": [
+            {"name": name, "guards": [_guard(row), _guard(other_guards[name])]}
+            for name, row in guards.items()
+            if not empty and _guard(row) != _guard(other_guards[name])
+        ],
+        "requirements": [
+            {"texts": row["texts"], "line": row["line"], "states": [row["states"], others[texts]["states"]]}
+            for texts, row in weights.items()
+            if texts in others and row["states"] != others[texts]["states"]
+        ],
+    }
+
+
+def _guard(event: dict[str, Any]) -> str:
+    """Return the guard of an event in words; if it is too long, its size."""
+    return str(event["guard"] or f"a decision diagram of {event['guard_nodes']} nodes")
+
+
+def _show_changes(model: sct.SupervisoryControlModel, changes: dict[str, Any]) -> None:
+    """Print what differs without an assumption, each fact with its value before and after."""
+    before, after = map(format_number, changes["controlled_states"])
+    if changes["empty"]:
+        say(f"{model.name}: the supervisor is empty: {changes['reason']}")
+        return
+    say(f"{model.name}: {before} states before, {after} states after")
+    for row in changes["guards"]:
+        say(f"\n{row['name']}\n    before: {row['guards'][0]}\n    after: {row['guards'][1]}")
+    for row in changes["requirements"]:
+        before, after = map(format_number, row["states"])
+        say(f"\n`{row['texts'][0]}` (line {row['line']})\n    before: {before} states\n    after: {after} states")
+    if not changes["guards"] and not changes["requirements"]:
+        say("no guard and no requirement changes")
 
 
 def _count(model: sct.SupervisoryControlModel, memory: int, times: int, *, as_json: bool) -> None:
@@ -120,17 +192,22 @@ def _counts(
 
 
 def _show_json(model: sct.SupervisoryControlModel, synthesis: Diagnosis, times: int) -> None:
-    guards = {guard.event: guard for guard in synthesis.supervisor.guards} if synthesis.supervisor else {}
-    events = [event for plant in model.plants for event in plant.events] if synthesis.supervisor else []
     answer = _counts(
         model,
         synthesis,
         synthesis.statistics,
         times,
         requirements=[_weight(weight) for weight in synthesis.weights],
-        events=[_event(event, guards.get(event), synthesis) for event in events],
+        events=_events(model, synthesis),
     )
     put(json.dumps(answer, indent=2))
+
+
+def _events(model: sct.SupervisoryControlModel, synthesis: Synthesis) -> list[dict[str, Any]]:
+    """Return all events with their guards; none if there is no supervisor."""
+    guards = {guard.event: guard for guard in synthesis.supervisor.guards} if synthesis.supervisor else {}
+    events = [event for plant in model.plants for event in plant.events] if synthesis.supervisor else []
+    return [_event(event, guards.get(event), synthesis) for event in events]
 
 
 def _weight(weight: Weight) -> dict[str, Any]:

@@ -41,6 +41,7 @@ _KINDS: dict[type, types.SymbolKind] = {
     rsc.Function: types.SymbolKind.Function,
     rsc.Requirement: types.SymbolKind.Operator,
     rsc.Property: types.SymbolKind.Key,
+    rsc.Assumption: types.SymbolKind.Key,
     rsc.ProvideStatement: types.SymbolKind.Object,
 }
 

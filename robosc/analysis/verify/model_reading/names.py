@@ -94,6 +94,7 @@ class Names:
                 start=1,
             )
         }
+        self.assumptions = self._assumptions()
         self._meanings: dict[ex.Expression, Meaning | Data] = {}
         self._changing: dict[ex.Expression, bool] = {}
 
@@ -104,6 +105,18 @@ class Names:
         """Return definitions outside of components, then those in each component."""
         outside = [(definition, None) for definition in self.robot.definitions if isinstance(definition, kind)]
         return [*outside, *((definition, instance) for instance in self for definition in instance.of(kind))]
+
+    def _assumptions(self) -> list[tuple[robosc.Assumption, Instance | None]]:
+        """Return the assumptions. One outside of the components of a library is about each import of its component."""
+        found = self.definitions(robosc.Assumption)
+        for instance in self:
+            library = instance.text.eContainer()
+            for assumption in library.definitions if library is not self.robot else ():
+                if isinstance(assumption, robosc.Assumption):
+                    first = assumption.target.events[0].communicationType
+                    if first.component is instance.text:
+                        found.append((assumption, instance))
+        return found
 
     def port(
         self, reference: robosc.CommunicationReference, within: Instance | None

@@ -52,7 +52,10 @@ class _PlantReading:
         self.model = model
         self.machine = Machine()
         observers = (plant for plant in model.plants if plant.kind == sct.PlantKind.requirement)
-        numbers = {plant: number for number, plant in enumerate(observers, start=1)}
+        assumptions = (plant for plant in model.plants if plant.kind == sct.PlantKind.assumption)
+        numbers = {
+            plant: number for plants in (observers, assumptions) for number, plant in enumerate(plants, start=1)
+        }
         self.plants = {
             plant: Plant(plant.kind.name, str(numbers[plant]) if plant in numbers else plant.origin or plant.name)
             for plant in model.plants

@@ -121,6 +121,7 @@ class _TextReading:
             if instance.of(robosc.ComponentBehaviour):
                 self.behaviour(instance)
         self.provided()
+        self.assumed()
         self.required()
         for (requirement, within), plant in self.names.observers.items():
             self.observer(requirement, within, plant)
@@ -422,6 +423,16 @@ class _TextReading:
             _chosen(slot, "none", denied, statements[0][0])
         )
 
+    # Assumptions
+
+    def assumed(self) -> None:
+        """Add assumptions: their events are possible only where the condition holds, whatever else allows them."""
+        for number, (assumption, within) in enumerate(self.names.assumptions, start=1):
+            plant, condition = Plant("assumption", str(number)), self.condition(assumption.condition, within)
+            self.locations(plant, ("holding",), "holding", ["holding"], assumption)
+            for name in dict.fromkeys(self.named(event, within) for event in assumption.target.events):
+                self.machine.events[name].participants.append(_only_where(condition, assumption))
+
     # Requirements
 
     def required(self) -> None:
@@ -573,6 +584,15 @@ def _chosen(
 
 def _always(writes: Mapping[Slot, Value], source: ex.Located) -> Participant:
     return Participant(lambda *_: EventEffect(writes, source), frozenset(), source)
+
+
+def _only_where(condition: Condition, source: ex.Located) -> Participant:
+    """Return a participant without a state that takes part only where a condition holds."""
+
+    def step(state: Mapping[Slot, Value], inputs: Mapping[str, Value]) -> EventEffect | None:
+        return EventEffect({}, source) if condition.compute(state, inputs) else None
+
+    return Participant(step, condition.reads, source)
 
 
 def _one_more(slot: Slot, source: ex.Located) -> Participant:

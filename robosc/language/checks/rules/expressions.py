@@ -43,6 +43,7 @@ if TYPE_CHECKING:
 
 _GUARD = Place(None, "a guard reads states and variables, and `value` is the data of one event")
 _REQUIREMENT = Place(None, "a requirement reads states and variables, and `value` is the data of one event")
+_ASSUMPTION = Place(None, "an assumption reads the state before the event, and `value` is the data of the event")
 _PROVIDE = Place(None, "provided data comes from states and variables, and `value` is the data of one event")
 _FUNCTION = Place(None, "a function computes its value from its parameters", Restriction.FUNCTION)
 _TIMED = Place(None, "an expired time has no data")
@@ -80,6 +81,8 @@ def _requirements(base: rsc.Base) -> Iterator[Finding]:
         yield from _boolean(invariant.condition, f"the condition after `{invariant.kind.name}`", _REQUIREMENT)
     for count in statements(rsc.CountRequirement, base):
         yield from _constant(count.bound, INTEGER, "the number after `at most`")
+    for assumed in statements(rsc.Assumption, base):
+        yield from _boolean(assumed.condition, "the condition of an assumption", _ASSUMPTION)
     for claimed in statements(rsc.Property, base):
         yield from _boolean(claimed.condition, "the condition of a property", _REQUIREMENT)
         if isinstance(claimed, rsc.ReachabilityProperty):

@@ -54,6 +54,7 @@ _KINDS = {
     rsc.Variable: "variable",
     rsc.Requirement: "requirement",
     rsc.Property: "property",
+    rsc.Assumption: "assumption",
 }
 #: Rules for unique names: the rule, the kind of element in words, and the scopes.
 _UNIQUE: tuple[tuple[str, str, Scopes], ...] = (

@@ -1,4 +1,4 @@
-"""Rule `requirement-event`: events that requirements may restrict, and readers of requirement automata."""
+"""Rule `requirement-event`: events of requirements and assumptions, and readers of requirement automata."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from robosc.language.checks.automata import named_events
 from robosc.language.checks.definitions import (
     communication_of,
     communications,
+    of_kind,
     restricted_events,
     statements,
     transitions,
@@ -16,8 +17,11 @@ from robosc.language.checks.edits import Choice, Removal, part_of
 from robosc.language.checks.libraries import instances
 from robosc.language.checks.rule import Finding, rule
 from robosc.model import robosc as rsc
+from robosc.model import sct
+from robosc.model.semantics.communication import CONTROLLABLE, port_event_of
 from robosc.model.semantics.cone_of_influence import accesses
-from robosc.model.semantics.naming import escape_keyword
+from robosc.model.semantics.instances import assumed_components
+from robosc.model.semantics.naming import enumeration, escape_keyword
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -28,7 +32,10 @@ if TYPE_CHECKING:
 
 @rule("requirement-event")
 def requirement_event(base: rsc.Base) -> Iterator[Finding]:
-    """No order or count restricts an outgoing message, and only requirements read requirement automata."""
+    """No order or count restricts an outgoing message, and only requirements read requirement automata.
+
+    An assumption restricts messages, feedback and responses of the robot. In a library, it is about one component.
+    """
     for events in restricted_events(base):
         for named in events.events if events else ():
             communication = communication_of(named.communicationType)
@@ -38,9 +45,49 @@ def requirement_event(base: rsc.Base) -> Iterator[Finding]:
                     f"`{communication.name}` comes from its component at any time, expected a request or an answer",
                     "restrict the reaction of the controller",
                 )
+    for assumption in statements(rsc.Assumption, base):
+        for named in assumption.target.events if assumption.target else ():
+            yield from _assumed(named)
+    if isinstance(base, rsc.Library):
+        yield from _about_several(base)
     if any(True for _ in statements(rsc.AutomatonRequirement, base)):
         yield from _readers(base)
     yield from _sent_on_change(base)
+
+
+#: Kinds of events that an assumption restricts.
+_FROM_ROBOT = (sct.EventKind.response, sct.EventKind.feedback)
+
+
+def _assumed(named: rsc.EventReference) -> Iterator[Finding]:
+    """Report an event of an assumption that is not an outgoing message, feedback or a response."""
+    event, communication = port_event_of(named), communication_of(named.communicationType)
+    if event is None or communication is None or event.kind in _FROM_ROBOT:
+        return
+    maker = "the controller decides on" if event.kind in CONTROLLABLE else "the node itself makes"
+    name, is_action = escape_keyword(communication.name), isinstance(communication, rsc.Action)
+    hint = "write a requirement"
+    if not isinstance(communication, rsc.Message):
+        hint = f"write `response from {name}`" + (f" or `feedback from {name}`" if is_action else "")
+    yield Finding(
+        named,
+        f"{maker} the {event.name} of `{communication.name}`, expected an outgoing message, feedback or a response",
+        hint,
+    )
+
+
+def _about_several(library: rsc.Library) -> Iterator[Finding]:
+    """Report assumptions outside of components that are not about one component with a text of its own."""
+    for assumption in of_kind(rsc.Assumption, library.definitions):
+        about = assumed_components(assumption, instances(library))
+        only = next(iter(about), None)
+        if len(about) > 1 or (only and (only.parameters or not isinstance(only.type, rsc.LocalComponent))):
+            yield Finding(
+                assumption,
+                "an assumption of a library is about one component, which each import of it keeps;"
+                f" found {enumeration(f'`{component.name}`' for component in about)}",
+                "write it in the robot",
+            )
 
 
 def _sent_on_change(base: rsc.Base) -> Iterator[Finding]:
@@ -86,6 +133,10 @@ def _readers(base: rsc.Base) -> Iterator[Finding]:
         if condition is not None:
             expanded = known.expanded(condition, statement.within)
             yield from _reading(condition, expanded, "the condition of a provide statement")
+    for assumed in known.statements(rsc.Assumption):
+        condition = assumed.element.condition
+        if condition is not None:
+            yield from _reading(condition, known.expanded(condition, assumed.within), "an assumption")
     for _, transition in transitions(base):
         for assignment in transition.assignments:
             yield from _reading(assignment.value, assignment.value, "an assignment")
