@@ -187,7 +187,8 @@ class Observations:
     """All observations of a supervisor, each kind in the order of the model.
 
     `unrestricted_calls` are triggers of services and actions that can happen, have no requirement, and involve no other
-    plant than their own. `unused_assumptions` are those that none of their events could violate. `counterexamples` explain events that synthesis restricts; large models may lack some of them.
+    plant than their own. `unused_assumptions` are those that none of their events could violate. `counterexamples`
+    explain events that synthesis restricts; large models may lack some of them.
     """
 
     never_enabled: tuple[NeverEnabled, ...]

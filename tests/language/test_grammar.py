@@ -30,6 +30,7 @@ ENUMERATIONS = ["MessageDirection", "ResultType", "Quantifier", "InvariantKind",
 #: Words that are keywords in one place only, and names elsewhere.
 UNRESERVED = {
     "after",
+    "assume",
     "always",
     "at",
     "automaton",

@@ -50,9 +50,9 @@ class Situation:
 class Explanation:
     """Answer whether an event can happen in a situation, with the reasons if it cannot.
 
-    `by` is the first cause that forbids it: plants, requirements or synthesis. It is None if nothing forbids the event.
-    It is also None if the supervisor never lets the robot reach the state and neither plants nor requirements forbid
-    the event. `plants` and `requirements` are all obstacles. `counterexample` is the consequence if synthesis did not
+    `by` is the first cause that forbids it: plants, assumptions, requirements or synthesis. It is None if nothing
+    forbids the event. It is also None if the supervisor never lets the robot reach the state and neither plants nor
+    requirements forbid the event. `plants` and `requirements` are all obstacles. `counterexample` is the consequence if synthesis did not
     forbid the event; `blamed` are then the requirements that forbid something after the end of that counterexample.
     `changes` are transitions of the events that can happen now and after which the event can happen. `way` is a
     shortest trace from here, under the supervisor, to a state that allows the event: empty if this state allows it,

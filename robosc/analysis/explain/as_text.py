@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 _BY = {
     Blocked.PLANT: "the robot is not ready for it",
+    Blocked.ASSUMPTION: "an assumption excludes it",
     Blocked.REQUIREMENT: "its requirements forbid it",
     Blocked.SYNTHESIS: "no requirement forbids it, but synthesis does, because of what could follow",
 }

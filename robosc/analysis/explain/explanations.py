@@ -23,6 +23,7 @@ from robosc.analysis.paths import Path, shortest_path
 from robosc.analysis.system import ExplainedSystem, SynthesizedSystem, whole_state
 from robosc.analysis.wording import join_with_and, name, words
 from robosc.engine import Blocked
+from robosc.model import sct
 from robosc.model.semantics.edges import edges_from
 from robosc.model.semantics.printing import RobotPrinter
 from robosc.synthesis import MEMORY, use_encoding
@@ -33,7 +34,6 @@ if TYPE_CHECKING:
     from robosc.analysis.blocking import BlockingCounterexample, BlockReason
     from robosc.analysis.paths import TraceStep
     from robosc.analysis.system import Codes
-    from robosc.model import sct
     from robosc.synthesis.bdd import Diagram
     from robosc.synthesis.relation import EventRelation
 
@@ -132,10 +132,14 @@ def _harmless(system: SynthesizedSystem, event: sct.Event, codes: Codes) -> bool
 
 def _first(plants: tuple[Note, ...], requirements: tuple[Note, ...], *, supervised: bool) -> Blocked | None:
     if plants:
-        return Blocked.PLANT
+        return Blocked.ASSUMPTION if all(map(_is_assumed, plants)) else Blocked.PLANT
     if requirements:
         return Blocked.REQUIREMENT
     return Blocked.SYNTHESIS if supervised else None
+
+
+def _is_assumed(note: Note) -> bool:
+    return isinstance(note.element, sct.Plant) and note.element.kind == sct.PlantKind.assumption
 
 
 def _way(system: SynthesizedSystem, start: Codes, allowed: Diagram) -> tuple[TraceStep, ...] | None:
@@ -214,12 +218,16 @@ def _never(system: SynthesizedSystem, event: sct.Event) -> list[Note]:
     if notes:
         return notes
     return [
-        Note(plant, f"`{name(plant)}` takes part in the {words(event)}, but never when all others do")
+        Note(plant, f"`{plant.text}` excludes it wherever all others take part")
+        if plant.kind == sct.PlantKind.assumption
+        else Note(plant, f"`{name(plant)}` takes part in the {words(event)}, but never when all others do")
         for plant in relation.enabled_by
     ]
 
 
 def _never_takes_part(system: SynthesizedSystem, plant: sct.Plant, event: sct.Event) -> list[Note]:
+    if plant.kind == sct.PlantKind.assumption:
+        return [Note(plant, f"`{plant.text}` excludes it in every state that the robot can reach")]
     notes = []
     for location in plant.locations:
         for edge in (edge for edge in edges_from(location) if edge.event is event):

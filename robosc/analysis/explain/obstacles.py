@@ -106,6 +106,9 @@ class Obstacles:
     def _plant(self, plant: sct.Plant) -> Note:
         here = self._here(plant)
         guard = self._guard(plant)
+        if plant.kind == sct.PlantKind.assumption and guard is not None:
+            failing = dict.fromkeys(map(self._describe, self._failing(guard, value=True)))
+            return Note(plant, f"`{plant.text}` excludes it", tuple(failing))
         if guard is not None:
             parts = tuple(dict.fromkeys(map(self._describe, self._failing(guard, value=True))))
             condition_text = f"{self._transition(plant)} requires `{self._print(guard)}`"

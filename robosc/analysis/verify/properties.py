@@ -113,9 +113,9 @@ def controllability(system: GuardedSystem) -> Verdict:
 def input_enabledness(system: GuardedSystem) -> Verdict:
     """Check that every component accepts the answers, errors, feedback and cancels that a communication allows.
 
-    Components synchronize with communications. An assumption may block its events: the node then rejects them. A component without an edge for such an event would block the robot in
-    the model, although nothing blocks it in reality. The term is that of I/O automata (Lynch, Tuttle: An introduction
-    to input/output automata, CWI Quarterly 1989).
+    Components synchronize with communications. A component without an edge for such an event would block the robot in
+    the model, although nothing blocks it in reality. Assumptions are excluded: the node checks them. The term is that
+    of I/O automata (Lynch, Tuttle: An introduction to input/output automata, CWI Quarterly 1989).
     """
     inputs = [
         relation

@@ -27,6 +27,10 @@ NO_STOP_ON_SILENCE = (
     "watchdog_stops holds commands back and does not stop the robot: onShutdown names no message, the robot continues"
     " with its last command"
 )
+#: Warning of a node at its start that goes on after a violation.
+REPORTS_VIOLATIONS = (
+    "onViolation is report: after the first violation of an assumption, nothing about the robot is proved"
+)
 #: Maximum depth of folders below the model in the search for a configuration.
 SEARCH_DEPTH = 3
 
@@ -215,6 +219,11 @@ class Configuration(_Settings):
     wait_for: list[str] = Field(
         default=[],
         description="Topics from which a controller must receive a message each before it sends commands.",
+    )
+    on_violation: Literal["stop", "report"] = Field(
+        default="stop",
+        description="Reaction to an event from the robot that violates an assumption. stop: hold commands back, cancel"
+        " actions and send onShutdown, until the node is started again. report: go on.",
     )
     lifecycle: bool = Field(default=False, description="Whether the ROS 2 node is a managed (lifecycle) node.")
     package: Package = Package()

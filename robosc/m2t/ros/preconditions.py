@@ -12,7 +12,7 @@ from robosc.language.configuration import Configuration
 from robosc.language.configuration.parameters import controller_parameters, layer_parameters, model_parameters
 from robosc.m2t.c.preconditions import preconditions as engine_preconditions
 from robosc.model import expression as ex
-from robosc.model import rosgraph
+from robosc.model import rosgraph, sct
 from robosc.model.places import place
 from robosc.model.reflection import tree
 from robosc.model.semantics.messages import find_message, holds_objects, parts_of, path_of
@@ -63,6 +63,7 @@ def preconditions(models: Models, configuration: Configuration, kind: str, ros: 
     if configuration.typed_state and not configuration.publish_state_information:
         hint = 'leave out "publishStateInformation": false'
         findings.append(configuration.error(("typedState",), '"typedState" needs "publishStateInformation"', hint))
+    findings += _violations(graph, configuration)
     if kind == "controller":
         name = configuration.package_name(graph)
         return [*findings, *_package(graph, configuration, name), *_settings(graph, configuration)]
@@ -174,6 +175,17 @@ def _settings(graph: rosgraph.RosGraph, configuration: Configuration) -> Iterato
     for place_of_key, setting in unused.items():
         if setting:
             yield configuration.warning(place_of_key, f'"{".".join(place_of_key)}" has no effect on this target')
+
+
+def _violations(graph: rosgraph.RosGraph, configuration: Configuration) -> Iterator[Diagnostic]:
+    """Return warnings on a node that goes on after a violation, and on a reaction to violations that cannot occur."""
+    if not any(plant.kind == sct.PlantKind.assumption for plant in graph.model.plants):
+        if "on_violation" in configuration.model_fields_set:
+            message = '"onViolation" has no effect: the model has no assumption'
+            yield configuration.warning(("onViolation",), message)
+    elif configuration.on_violation == "report":
+        message = '"onViolation": after the first violation of an assumption, nothing about the robot is proved'
+        yield configuration.warning(("onViolation",), message, "leave it out: then the first violation stops the robot")
 
 
 def _outside(

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from robosc.model import rosgraph, sct
 from robosc.model.semantics.definition import reported_variables
-from robosc.model.semantics.roles import plant_of
+from robosc.model.semantics.roles import component_name
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -42,10 +42,12 @@ def components(graph: rosgraph.RosGraph) -> list[Parts]:
     clients: list[rosgraph.ServiceClient | rosgraph.ActionClient] = [*graph.serviceClients, *graph.actionClients]
     sendings = [sending for publisher in graph.publishers for sending in publisher.sendings]
     sendings += [client.request for client in clients]
-    listening = [(_owner(reception.event), topic) for topic in graph.subscriptions for reception in topic.receptions]
+    listening = [
+        (component_name(reception.event), topic) for topic in graph.subscriptions for reception in topic.receptions
+    ]
     topics = _grouped(dict.fromkeys(listening))
-    commands = _grouped((_owner(sending.event), sending) for sending in sendings)
-    called = _grouped((_owner(client.request.event), client) for client in clients)
+    commands = _grouped((component_name(sending.event), sending) for sending in sendings)
+    called = _grouped((component_name(client.request.event), client) for client in clients)
     for name in [*topics, *commands]:
         plants.setdefault(name, None)
     stored = reported_variables(graph)
@@ -73,8 +75,3 @@ def _grouped(owned: Iterable[tuple[str, _Element]]) -> dict[str, list[_Element]]
     for owner, element in owned:
         groups.setdefault(owner, []).append(element)
     return groups
-
-
-def _owner(event: sct.Event) -> str:
-    """Return the component of a communication."""
-    return (plant_of(event).origin or "").rpartition(".")[0]

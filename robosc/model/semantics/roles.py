@@ -63,6 +63,16 @@ def event_name(event: sct.Event) -> str:
     return f"{plant.name}.{event.name}"
 
 
+def component_name(event: sct.Event) -> str:
+    """Return the component of a communication's event."""
+    return (plant_of(event).origin or "").rpartition(".")[0]
+
+
+def assumption_name(assumption: sct.Plant) -> str:
+    """Return the name of an assumption; its text if it has none."""
+    return assumption.origin or assumption.text or assumption.name
+
+
 def provide_number(event: sct.Event) -> int:
     """Return the number of the `provide` statement that a data event selects, from 1 in text order. 0 for none."""
     return provide_numbers(plant_of(event))[event]

@@ -47,6 +47,8 @@ BRACKETS = {"{": 1, "[": 1, "]": -1, "}": -1}
 STRING_OR_BRACKET = re.compile(r'"(?:[^"\\]|\\.)*"?|[][{}]', re.DOTALL)
 #: Maximum time of a clock, in seconds: ROS counts nanoseconds in 64 bits.
 LATEST = 2.0**63 / 1e9
+#: Directions of lines with data from the robot. A violated assumption excludes the event of its line.
+COMING_IN = ("in", "violated")
 
 
 class TraceError(Exception):
@@ -116,7 +118,7 @@ def read_trace(path: str) -> list[Line]:
             raise TraceError(f"line {number} is not UTF-8: {error.reason} at byte {error.start}") from None
         if line.direction == "outside":
             break
-        if line.direction not in ("in", "out", "internal"):
+        if line.direction not in (*COMING_IN, "out", "internal"):
             raise TraceError(f"line {number} comes from a supervisory layer, not from a controller")
         lines.append(line)
     if not lines:
@@ -439,7 +441,7 @@ class Player:
         previous = replace(lines[0], time=begun)
         self._later = self._now - begun
         for position, line in enumerate(lines):
-            if line.direction == "in" and position >= self._sent_until:
+            if line.direction in COMING_IN and position >= self._sent_until:
                 self._let_pass(line, previous)
                 self._sent_until = position + self._send(lines, position)
             self._follow(lines, position, previous)
@@ -503,7 +505,13 @@ class Player:
         if line.event not in self._answers:
             raise TraceError(f"line {line.number}: the node of this package knows no {line.event}")
         self._answers[line.event](line)
-        return 1
+        return 1 + self._ends_as_error(lines, position)
+
+    def _ends_as_error(self, lines: list[Line], position: int) -> bool:
+        """Return whether the next line is the error in place of a response that violates an assumption."""
+        line, after = lines[position], {later.event for later in lines[position + 1 : position + 2]}
+        answered = (client for client in self._clients if client["response"]["events"][0]["event"] == line.event)
+        return line.direction == "violated" and any(client["error"] in after for client in answered)
 
     def _add(self, described: dict[str, Any], send: Callable[[dict[str, Any]], None]) -> Callable[[Line], None]:
         incoming = Incoming(described)
@@ -564,7 +572,7 @@ class Player:
         line = lines[position]
         if line.event in self._due:
             done = self._wait_until_due(line)
-        elif line.direction == "in":
+        elif line.direction in COMING_IN:
             done = self._log.wait(PATIENCE)
         else:
             done = self._wait_for_own(lines, position, previous)
@@ -573,7 +581,7 @@ class Player:
         if (done.direction, done.event) != (line.direction, line.event):
             raise TraceError(f"line {line.number}: the trace has {line}, but the node did {done}")
         if (line.data or done.data) and not same(line.data, done.data):
-            verb = "read" if line.direction == "in" else "sent"
+            verb = "read" if line.direction in COMING_IN else "sent"
             raise TraceError(f"line {line.number}: the trace has {line}, but the node {verb} {done}")
         self._log.drop()
         self._note_deadlines(line.event)
@@ -603,7 +611,7 @@ class Player:
         ahead = next((later for later in range(position, len(lines)) if lines[later].direction != "internal"), position)
         if (
             ahead >= self._sent_until
-            and lines[ahead].direction == "in"
+            and lines[ahead].direction in COMING_IN
             and lines[ahead].time - lines[position].time < self._period / 20
         ):
             self._sent_until = ahead + self._send(lines, ahead)
@@ -612,7 +620,7 @@ class Player:
     def _wait_until_due(self, line: Line) -> Line | None:
         """Wait for the failure of a call, or the end of the pause after it, until the time is over."""
         due = self._due[line.event]
-        done = self._log.wait(ANSWER if line.direction == "in" and self._now < due else 0)
+        done = self._log.wait(ANSWER if line.direction in COMING_IN and self._now < due else 0)
         while done is None and self._now < due:
             self._pass_period()
             done = self._log.peek()

@@ -186,6 +186,7 @@ def _guarded(
 def _assumptions(models: Models, configuration: Configuration) -> dict[str, Any]:
     model, graph = models.sct, models.rosgraph
     events = [event for plant in model.plants for event in plant.events]
+    checked = [plant for plant in model.plants if plant.kind == sct.PlantKind.assumption]
     overridden = _overridden(model, graph, configuration.on_shutdown)
     return {
         "uncontrollable": [event_name(event) for event in events if not event.controllable],
@@ -193,10 +194,15 @@ def _assumptions(models: Models, configuration: Configuration) -> dict[str, Any]
             {"event": event_name(event), "time": timer_text(event.timer)} for event in events if event.timer is not None
         ],
         "marked": [
-            {"plant": plant.origin or plant.name, "states": [place.name for place in plant.locations if place.marked]}
+            {
+                "plant": plant.origin or plant.name,
+                "states": [location.name for location in plant.locations if location.marked],
+            }
             for plant in model.plants
             if len(plant.locations) > 1 and plant.kind != sct.PlantKind.data
         ],
+        "stated": [{"text": plant.text or plant.name, "line": place(plant)[1].line} for plant in checked],
+        "on_violation": configuration.on_violation,
         "watchdogs": [
             {"topic": topic, "milliseconds": milliseconds}
             for topic, milliseconds in sorted(configuration.watchdog_ms.items())

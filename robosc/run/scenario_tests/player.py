@@ -25,7 +25,7 @@ from robosc.run.node_tests.trace_test import describe_incoming
 from robosc.run.runtime.core.event_log import nest
 from robosc.run.runtime.core.json_text import json_text
 from robosc.run.runtime.core.port import CancelAnswer, Failure, GoalOutcome
-from robosc.run.scenario_tests.reading import Holds, IncomingEvent, Permission, Refusal, SentCommand, Wait
+from robosc.run.scenario_tests.reading import Holds, IncomingEvent, Permission, Refusal, SentCommand, Violation, Wait
 from robosc.run.simulation.data import DataError, EventData
 
 if TYPE_CHECKING:
@@ -67,6 +67,11 @@ class _Controller(DrivenController):
             self.messages[self._lines_so_far()] = self._senders[event].message
         return acted
 
+    @property
+    def violations(self) -> list[str]:
+        """The names of the violated assumptions, once for each violation."""
+        return self._violations.names
+
     def _before(self, name: str) -> bool:
         may_happen = super()._before(name)
         if not may_happen:
@@ -85,7 +90,11 @@ def unknown_events(model: sct.SupervisoryControlModel, scenarios: Iterable[Scena
 
     Also for each line with an event that the robot does not send.
     """
+    assumptions = [plant.origin for plant in model.plants if plant.kind == sct.PlantKind.assumption and plant.origin]
     for line in (line for scenario in scenarios for line in scenario.steps):
+        if isinstance(line, Violation) and line.assumption not in assumptions:
+            hint = f"expected {join_with_and(assumptions)}" if assumptions else "give the assumption a name"
+            yield line.fault(f"the robot has no assumption `{line.assumption}`", hint)
         if not isinstance(line, (IncomingEvent, Refusal, Permission, SentCommand)):
             continue
         try:
@@ -181,7 +190,7 @@ class Player(Drive):
         self._controller.keep_messages(lambda: len(self._lines.lines))
         self._controller.start()
         findings: list[Diagnostic] = []
-        self._since = 0
+        self._since = self._violations_before = 0
         self._sources = []
         try:
             self._pass_period()
@@ -207,12 +216,16 @@ class Player(Drive):
             match line:
                 case Wait() | IncomingEvent() | Refusal():
                     self._since = len(self._lines.lines)
+                    self._violations_before = len(self._controller.violations)
                     self._step(line)
                 case Holds(text=text):
                     if not evaluate(self._conditions[line], self._controller.engine.read):
                         return line.fault(f"`{text}` does not hold", self._state())
                 case Permission():
                     return self._verdict(line, find_event(self._graph.model, line.event))
+                case Violation(assumption=assumption):
+                    if assumption not in self._controller.violations[self._violations_before :]:
+                        return line.fault(f"the last step does not violate `{assumption}`", self._state())
                 case SentCommand():
                     return self._sent(line, find_event(self._graph.model, line.event))
         except NamingError as error:
@@ -238,7 +251,8 @@ class Player(Drive):
 
     def _come_in(self, line: IncomingEvent) -> None:
         event = find_event(self._graph.model, line.event)
-        if not self._controller.engine.enabled(event_name(event)):
+        engine = self._controller.engine
+        if not engine.enabled(event_name(event)) and not engine.violated_assumptions(event_name(event)):
             if event.kind == sct.EventKind.canceled and self._clients[event] in self._robot.goals:
                 hint = f"write `error from {self._called(event)} because canceled`"
                 raise NamingError("the controller has not canceled this goal", hint)
@@ -449,8 +463,8 @@ class Player(Drive):
                 return None
             why = f"{quote_requirements(failing)} forbids it" if failing else _WHY[by]
             return line.fault(f"the {phrase} is not allowed: {why}", self._state())
-        if by in (None, Blocked.PLANT):
-            why = "it is allowed" if by is None else _WHY[Blocked.PLANT]
+        if by in (None, Blocked.PLANT, Blocked.ASSUMPTION):
+            why = "it is allowed" if by is None else _WHY[by]
             return line.fault(f"the {phrase} is not forbidden: {why}", self._state())
         if line.by is None or any(
             line.by in (requirement.name, requirement.text) or line.by in (requirement.text or "")
@@ -506,6 +520,7 @@ class Player(Drive):
 
 _WHY = {
     Blocked.PLANT: "the robot is not ready for it",
+    Blocked.ASSUMPTION: "an assumption excludes it",
     Blocked.REQUIREMENT: "its requirements forbid it",
     Blocked.SYNTHESIS: "synthesis forbids it",
 }

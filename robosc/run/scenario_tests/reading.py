@@ -21,7 +21,7 @@ _SECONDS = {"ms": 0.001, "s": 1.0, "min": 60.0}
 _LONGEST = 86_400
 _EXPECTED = re.compile(
     EVENT + r"\s+(?:(?P<verdict>allowed)|(?P<forbidden>forbidden)(?:\s+by\s+(?P<by>.+))?"
-    r"|(?P<sent>(?:not\s+)?sent)(?:\s+with\s+(?P<data>.+))?)"
+    r"|(?P<sent>(?:not\s+)?sent)(?:\s+with\s+(?P<data>.+))?|(?P<violated>violated))"
 )
 #: Other words that a line may begin with.
 _WORDS = ("scenario", "wait", "expect")
@@ -95,6 +95,13 @@ class SentCommand(Line):
     data: Any = None
 
 
+@dataclass(frozen=True)
+class Violation(Line):
+    """Expectation that the robot violated an assumption with the last step."""
+
+    assumption: str
+
+
 @dataclass
 class Scenario:
     """Run of the robot from its start."""
@@ -116,7 +123,7 @@ def read_scenarios(file: str, text: str) -> tuple[list[Scenario], list[Holds], l
         start_of_file = Line(file, Span(1, 1, 1, 1))
         reader.findings.append(start_of_file.fault("the file has no scenario", 'begin with `scenario "…"`'))
     for scenario in reader.scenarios:
-        if not any(isinstance(step, (Holds, Permission, SentCommand)) for step in scenario.steps):
+        if not any(isinstance(step, (Holds, Permission, SentCommand, Violation)) for step in scenario.steps):
             reader.findings.append(scenario.line.fault("the scenario has no expectation", "write `expect …`"))
     return reader.scenarios, reader.conditions, sorted(reader.findings, key=lambda finding: finding.span.line)
 
@@ -214,6 +221,8 @@ class _Reader:
                 return
             self.conditions.append(Holds(line.file, span, text, len(self.conditions)))
             yield self.conditions[-1]
+        elif match["violated"]:
+            yield Violation(line.file, line.span, text.rsplit(maxsplit=1)[0].replace("^", ""))
         elif match["sent"]:
             expected = match["sent"] == "sent"
             data = self._data(text, match, line)

@@ -208,6 +208,10 @@ class EventData:
             return False
         return True
 
+    def error_of(self, event: str) -> str | None:
+        """Return the error that happens in place of a response that cannot be taken; None for other events."""
+        return self._errors.get(event)
+
     @staticmethod
     def of_unreadable(data: Mapping[str, Any]) -> dict[str, Any]:
         """Return data of the error that happens in place of an answer whose data can't be read."""

@@ -13,13 +13,13 @@ from robosc.model.engine import Role
 from robosc.model.semantics.definition import named_state
 from robosc.model.semantics.domains import domain
 from robosc.model.semantics.printing import SctPrinter
-from robosc.model.semantics.roles import event_name
+from robosc.model.semantics.roles import assumption_name, event_name
 from robosc.run.simulation.data import EventData
 from robosc.run.simulation.script import REFUSE, WAIT
 from robosc.run.simulation.unreadable import Unreadable
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
     from random import Random
 
     from robosc.base.ros_types import RosTypes
@@ -43,12 +43,16 @@ def whole_state(engine: Engine) -> dict[str, Value]:
 
 @dataclass(frozen=True)
 class RequestResult:
-    """Requested event: whether it happened, else what blocked it, and the state afterwards."""
+    """Requested event: whether it happened, else what blocked it, and the state afterwards.
+
+    `violated`: the assumptions that block it, by name or else by text.
+    """
 
     event: str
     data: Mapping[str, Any]
     by: Blocked | Unreadable | None
     state: Mapping[str, Value]
+    violated: Sequence[str] = ()
 
     @property
     def accepted(self) -> bool:
@@ -59,7 +63,13 @@ class RequestResult:
         """Return the object that `simulate --script` prints."""
         by = None if self.by is None else str(self.by)
         details = dict(self.data) if self.event == REFUSE else {}
+        details |= {"violated": list(self.violated)} if self.violated else {}
         return {"event": self.event, **details, "accepted": self.accepted, "by": by, "state": dict(self.state)}
+
+
+def violated_names(engine: Engine, event: str) -> list[str]:
+    """Return the assumptions that an event of the robot would violate now, by name or else by text."""
+    return list(map(assumption_name, engine.violated_assumptions(event)))
 
 
 def refusal(engine: Engine, action: str) -> Blocked | None:
@@ -111,7 +121,8 @@ class Simulation:
         by = self.engine.blocked_by(event) or self.data.unreadable(event, data or {})
         if by is None:
             self.engine.perform(event, inputs)
-        happened = RequestResult(event, data or {}, by, whole_state(self.engine))
+        violated = violated_names(self.engine, event) if by is Blocked.ASSUMPTION else ()
+        happened = RequestResult(event, data or {}, by, whole_state(self.engine), violated)
         if by is None:
             self._before.append(before)
             self.trace.append(happened)
@@ -146,6 +157,8 @@ class Simulation:
             return "its goal is not being canceled"
         if by is Blocked.PLANT:
             return "the robot is not ready for it"
+        if by is Blocked.ASSUMPTION:
+            return f"excluded by {' and '.join(a.text or a.name for a in self.engine.violated_assumptions(event))}"
         if by is Blocked.REQUIREMENT:
             texts = [failing.text for failing in self.engine.failing_requirements(event) if failing.text]
             return f"forbidden by {' and '.join(texts) or 'a requirement'}"
@@ -197,6 +210,7 @@ class LoopSimulation:
         """Perform a step; return the object that `simulate --loop --script` prints. Raises DataError."""
         inputs = {} if event in (*self.OWN, REFUSE) else self.data.inputs(event, data)
         self._happened.clear()
+        violated: list[str] = []
         by: Blocked | Unreadable | None = None
         if event == WAIT:
             self._wait(round(data["seconds"] * 1000))
@@ -209,13 +223,16 @@ class LoopSimulation:
             if not self._in_batch:
                 self._loop.begin()
             by = self._loop.engine.blocked_by(event) or self.data.unreadable(event, data)
-            if not isinstance(by, Unreadable):
+            violated = violated_names(self._loop.engine, event) if by is Blocked.ASSUMPTION else []
+            error = self.data.error_of(event) if violated else by.error if isinstance(by, Unreadable) else None
+            if error is not None:
+                self._loop.perform(error, self.data.inputs(error, self.data.of_unreadable(data)))
+            elif by is None:
                 self._loop.perform(event, inputs)
-            elif by.error is not None:
-                self._loop.perform(by.error, self.data.inputs(by.error, self.data.of_unreadable(data)))
             if not self._in_batch:
                 self._loop.end()
         details = dict(data) if event in (WAIT, REFUSE) else {}
+        details |= {"violated": violated} if violated else {}
         return {
             "event": event,
             **details,

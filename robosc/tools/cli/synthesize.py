@@ -118,9 +118,7 @@ def _assumption(model: sct.SupervisoryControlModel, name: str) -> sct.Plant:
     return known[name]
 
 
-def _changes(
-    model: sct.SupervisoryControlModel, synthesis: Diagnosis, other: Diagnosis, times: int
-) -> dict[str, Any]:
+def _changes(model: sct.SupervisoryControlModel, synthesis: Diagnosis, other: Diagnosis, times: int) -> dict[str, Any]:
     """Return what differs in another synthesis of a model: numbers of states, guards, requirements that matter."""
     guards, other_guards = ({row["name"]: row for row in _events(model, each)} for each in (synthesis, other))
     weights, others = ({tuple(row["texts"]): row for row in map(_weight, each.weights)} for each in (synthesis, other))

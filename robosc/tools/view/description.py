@@ -55,6 +55,17 @@ def describe(models: Models, texts: Mapping[str, str]) -> dict[str, Any]:
         for requirement in model.requirements
         if requirement.text
     ]
+    assumptions = [
+        {
+            "event": event_name(event),
+            "name": plant.origin or "",
+            "text": plant.text or "",
+            "place": describer.place(plant),
+        }
+        for plant in model.plants
+        if plant.kind == sct.PlantKind.assumption
+        for event in dict.fromkeys(edge.event for edge in edges_of(plant))
+    ]
     invariants = [
         {"event": "", "name": invariant.name or "", "text": invariant.text, "place": describer.place(invariant)}
         for invariant in model.invariants
@@ -65,7 +76,7 @@ def describe(models: Models, texts: Mapping[str, str]) -> dict[str, Any]:
         "automata": automata,
         "events": events,
         "commands": [event_name(event) for event in commands_of(model)],
-        "requirements": requirements + invariants,
+        "requirements": requirements + invariants + assumptions,
         "communication": [] if models.rosgraph is None else _communication(models),
         "files": [{"name": PurePath(path).name, "lines": color_lines(path, text)} for path, text in texts.items()],
     }

@@ -108,15 +108,15 @@ class Names:
 
     def _assumptions(self) -> list[tuple[robosc.Assumption, Instance | None]]:
         """Return the assumptions. One outside of the components of a library is about each import of its component."""
-        found = self.definitions(robosc.Assumption)
+        assumptions = self.definitions(robosc.Assumption)
         for instance in self:
             library = instance.text.eContainer()
             for assumption in library.definitions if library is not self.robot else ():
                 if isinstance(assumption, robosc.Assumption):
                     first = assumption.target.events[0].communicationType
                     if first.component is instance.text:
-                        found.append((assumption, instance))
-        return found
+                        assumptions.append((assumption, instance))
+        return assumptions
 
     def port(
         self, reference: robosc.CommunicationReference, within: Instance | None

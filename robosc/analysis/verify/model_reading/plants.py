@@ -53,9 +53,7 @@ class _PlantReading:
         self.machine = Machine()
         observers = (plant for plant in model.plants if plant.kind == sct.PlantKind.requirement)
         assumptions = (plant for plant in model.plants if plant.kind == sct.PlantKind.assumption)
-        numbers = {
-            plant: number for plants in (observers, assumptions) for number, plant in enumerate(plants, start=1)
-        }
+        numbers = {plant: number for plants in (observers, assumptions) for number, plant in enumerate(plants, start=1)}
         self.plants = {
             plant: Plant(plant.kind.name, str(numbers[plant]) if plant in numbers else plant.origin or plant.name)
             for plant in model.plants

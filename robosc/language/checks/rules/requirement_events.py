@@ -65,10 +65,10 @@ def _assumed(named: rsc.EventReference) -> Iterator[Finding]:
     if event is None or communication is None or event.kind in _FROM_ROBOT:
         return
     maker = "the controller decides on" if event.kind in CONTROLLABLE else "the node itself makes"
-    name, is_action = escape_keyword(communication.name), isinstance(communication, rsc.Action)
+    is_action = isinstance(communication, rsc.Action)
     hint = "write a requirement"
     if not isinstance(communication, rsc.Message):
-        hint = f"write `response from {name}`" + (f" or `feedback from {name}`" if is_action else "")
+        hint = f"the robot causes its `response`{' and its `feedback`' if is_action else ''}"
     yield Finding(
         named,
         f"{maker} the {event.name} of `{communication.name}`, expected an outgoing message, feedback or a response",

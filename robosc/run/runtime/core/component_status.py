@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 class Own:
     """Knowledge of a controller or layer beyond its engine."""
 
+    #: Return the names of the assumptions that events of a component have violated.
+    violated: Callable[[str], list[str]]
     #: Return why a command that the supervisor allows is held back; None if it can be sent.
     held_back: Callable[[sct.Event], str | None]
     #: Return the faults of a component.
@@ -67,7 +69,9 @@ class StatusReporter:
             values += [(variable.name, _text(self._blocking.engine.value(variable))) for variable in plant.variables]
         values += [(variable.name, _text(format_value(self._data.variables[variable]))) for variable in parts.stored]
         values += [(request(sending), self._verdict(sending.event)) for sending in parts.commands]
-        return ComponentStatus(parts.name, bool(faults), "; ".join([state, *faults]), values)
+        violated = self._own.violated(parts.name)
+        faults = [*(f"violated: {name}" for name in violated), *faults]
+        return ComponentStatus(parts.name, bool(faults), "; ".join([state, *faults]), values, bool(violated))
 
     def _verdict(self, event: sct.Event) -> str:
         if not self._blocking.engine.enabled(event_name(event)):

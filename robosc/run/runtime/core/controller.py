@@ -148,6 +148,7 @@ class Controller(EventHandler):
                 self._port.warn(NO_STOP_ON_SILENCE)
             elif not self._settings.configuration.says_how_to_stop:
                 self._port.warn(NO_STOP)
+        self._warn_of_report()
         if self._unheard:
             self._port.info(f"commands wait for {_topics(self._unheard)}")
         words = topic_words(self._graph)
@@ -191,7 +192,9 @@ class Controller(EventHandler):
 
     @property
     def _halted(self) -> bool:
-        return self._stopping or (self._watchdog_stops and any(dog.tripped for dog in self._watchdogs.values()))
+        if self._stopping or self._violations.stopped:
+            return True
+        return self._watchdog_stops and any(dog.tripped for dog in self._watchdogs.values())
 
     def _halt(self) -> None:
         """Cancel running actions, then send the last messages regardless of their requirements."""
@@ -217,6 +220,7 @@ class Controller(EventHandler):
             self._control.begin()
             yield
             self._control.end()
+        self._stop_if_violated()
 
     def _note_received(self, subscription: rosgraph.Subscription) -> None:
         if subscription in self._unheard:
@@ -269,8 +273,10 @@ class Controller(EventHandler):
     def _held_back(self, event: sct.Event) -> str | None:
         if self._unheard and not self._stopping:
             return f"it waits for {_topics(self._unheard)}"
+        if self._stopping:
+            return "the node is not active"
         if self._halted:
-            return "the node is not active" if self._stopping else "a topic is silent"
+            return "an assumption is violated" if self._violations.stopped else "a topic is silent"
         return "its data can't be sent" if event_name(event) in self._withheld else None
 
     def _faults(self, parts: Parts) -> list[str]:

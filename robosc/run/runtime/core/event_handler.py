@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from robosc.base.ros_types import Section
 from robosc.engine import ControlLoop, Hooks
+from robosc.language.configuration import REPORTS_VIOLATIONS
 from robosc.language.configuration.parameters import model_parameters
 from robosc.model import engine, rosgraph, sct
 from robosc.model.semantics.durations import set_milliseconds
@@ -20,6 +21,7 @@ from robosc.run.runtime.core.node_data import NodeData
 from robosc.run.runtime.core.port import Failure
 from robosc.run.runtime.core.reports import StateReporter, Throttle
 from robosc.run.runtime.core.times import Times
+from robosc.run.runtime.core.violations import ViolationError, Violations
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -92,13 +94,16 @@ class EventHandler:
         self._parameters = {known.name: parameter for parameter, known in model_parameters(graph).items()}
         self.set_parameters(settings.parameters)
         self._times = Times(self._control.timers, event_loop, self._expire)
-        self._reports = StateReporter(graph, self._control.engine, self._data, port, settings.configuration)
+        stop = settings.configuration.on_violation == "stop"
+        self._violations = Violations(self._control.engine, stop=stop)
+        self._reports = StateReporter(graph, self._data, port, settings.configuration, self._violations)
         self._blocking = Blocking(self._control.engine)
-        own = Own(self._held_back, self._faults)
+        own = Own(self._violations.of, self._held_back, self._faults)
         self._statuses = StatusReporter(graph, port, self._data, self._blocking, own)
         if "diagnostics_ms" in settings.parameters:
             self._statuses.report_every(settings.number("diagnostics_ms"), settings.number("period_ms"))
         self._warn = Throttle(port.warn, event_loop.clock)
+        self._err = Throttle(port.error, event_loop.clock)
         self._events = {event_name(event): event for plant in graph.model.plants for event in plant.events}
         self._incoming = self._of_role(engine.Role.incoming)
         #: Goals of the actions, by the event that cancels them.
@@ -169,6 +174,22 @@ class EventHandler:
         with self._times:
             yield
             self._control.settle()
+        self._stop_if_violated()
+
+    def _stop_if_violated(self) -> None:
+        """Stop the robot after the first violation, unless the node only reports violations."""
+        if self._violations.must_halt():
+            self._port.error("the robot is stopped: it violated an assumption, and is no longer as the model describes")
+            self._halt()
+
+    def _halt(self) -> None:
+        """Stop the robot."""
+        raise NotImplementedError
+
+    def _warn_of_report(self) -> None:
+        """Warn at the start if the node goes on after a violation."""
+        if self._violations.exist and self._settings.configuration.on_violation == "report":
+            self._port.warn(REPORTS_VIOLATIONS)
 
     def _expire(self) -> None:
         """Handle expired timers, after the messages that arrived before."""
@@ -196,9 +217,12 @@ class EventHandler:
             self._receive(client.feedback, client.identifier, message)
 
     def _receive(self, reception: rosgraph.Reception, name: str, message: Message) -> bool:
-        """Handle a message or feedback as an event; report data that can't be read and return False."""
+        """Handle a message or feedback as an event; report data that can't be read and return False.
+
+        An event against an assumption counts as one whose data can't be read.
+        """
         fault = self._perform(reception.event, reception.inputs, message)
-        if fault is not None:
+        if fault is not None and not isinstance(fault, ViolationError):
             self._warn(reception.event, f"{name}: {fault}")
         return fault is None
 
@@ -257,10 +281,16 @@ class EventHandler:
     ) -> UnreadableError | None:
         """Perform an event of the robot if it is enabled; return why its data can't be read, else None.
 
-        `source` is the event that the message came with; None means the event itself.
+        The reason is a ViolationError if an assumption excludes the event. `source` is the event that the message came
+        with; None means the event itself.
         """
         if not self._control.enabled(event_name(event)):
-            return None
+            violation = self._violations.check(event)
+            if violation is not None:
+                logged = self._logged[event].read(self._data, message) if self._log.active else None
+                self._log.write(self._port.now(), "violated", event_name(event), logged)
+                self._err((event, str(violation)), f"{event_name(event)} {violation}")
+            return violation
         try:
             received = self._data.receive(event, inputs, message)
         except UnreadableError as fault:

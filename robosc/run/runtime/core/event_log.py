@@ -76,8 +76,8 @@ class EventLog:
     def write(self, time: float, direction: str, event: str, data: Mapping[str, Json] | None = None) -> None:
         """Append the line of an event, soon. `time` is in seconds.
 
-        `direction` is `in`, `out`, `internal`, `outside` or `blocked`. `data` came in or went out with the event,
-        as `{"value": ...}`.
+        `direction` is `in`, `out`, `internal`, `outside`, `blocked` or `violated`. `data` came in or went out with the
+        event, as `{"value": ...}`.
         """
         if self.active:
             entry: dict[str, Json] = {"time": time, "direction": direction, "event": event}

@@ -58,6 +58,7 @@ class Layer(EventHandler):
     def start(self) -> None:
         """Publish the definition, and the state from now on."""
         self._reports.publish_definition()
+        self._warn_of_report()
         self._times.start()
         with self._times:
             self._control.settle()
@@ -74,17 +75,34 @@ class Layer(EventHandler):
     def passes(self, sending: rosgraph.Sending) -> bool:
         """Perform the event of a controller's message and return True; report it as blocked if it is not allowed."""
         with self._times:
-            if self._control.perform(event_name(sending.event)):
+            if not self._violations.stopped and self._control.perform(event_name(sending.event)):
                 self._control.settle()
                 if sending in self._publishers:
                     self._forwarded.add(sending)
                 return True
-        reason = self._blocking.reason(sending.event)
-        self._report_blocked(sending.event, reason.kind, reason.because)
+        if self._violations.stopped:
+            texts = [assumption.text or assumption.name for assumption in self._violations.assumptions]
+            self._report_blocked(sending.event, "assumption", texts)
+        else:
+            reason = self._blocking.reason(sending.event)
+            self._report_blocked(sending.event, reason.kind, reason.because)
         if sending in self._forwarded:
             self._forwarded.remove(sending)
             self._send_instead(sending)
         return False
+
+    def _halt(self) -> None:
+        """Cancel running goals, and send the messages of `on_blocked`."""
+        with self._batch():
+            for event, goals in self.goals.items():
+                self._control.perform(event_name(event))
+                goals.cancel()
+        self._forwarded.clear()
+        for sending in self._publishers:
+            self._send_instead(sending)
+
+    def _held_back(self, event: sct.Event) -> str | None:  # noqa: ARG002  # all commands are blocked
+        return "an assumption is violated" if self._violations.stopped else None
 
     def _send_instead(self, sending: rosgraph.Sending) -> None:
         """Send a message in place of blocked ones, with default data if its own can't be sent."""

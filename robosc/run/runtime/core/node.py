@@ -275,7 +275,7 @@ class RunningNode(ControllerPort, ABC):
         report.header.stamp = self._stamp_now()
         report.status = [
             kinds.DiagnosticStatus(
-                level=kinds.DiagnosticStatus.WARN if status.warns else kinds.DiagnosticStatus.OK,
+                level=getattr(kinds.DiagnosticStatus, "ERROR" if status.fails else "WARN" if status.warns else "OK"),
                 name=f"{self.full_name.removeprefix('/')}: {status.component}",
                 message=status.message,
                 hardware_id=self._graph.name,

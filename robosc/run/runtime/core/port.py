@@ -92,12 +92,16 @@ class Goal(Protocol):
 
 @dataclass(frozen=True)
 class ComponentStatus:
-    """Status of a component: whether it warns, its state and faults, and further values."""
+    """Status of a component: whether it warns, its state and faults, and further values.
+
+    `fails`: it has an error.
+    """
 
     component: str
     warns: bool
     message: str
     values: Sequence[tuple[str, str]]
+    fails: bool = False
 
 
 class Port(Protocol):

@@ -7,16 +7,17 @@ from typing import TYPE_CHECKING
 
 from robosc.model import rosgraph, sct
 from robosc.model.semantics.definition import TRANSITIONS_KEPT, definition_text, reported_variables
+from robosc.model.semantics.roles import assumption_name
 from robosc.run.runtime.core.event_log import format_value
 from robosc.run.runtime.core.json_text import Json, json_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable, Sequence
 
-    from robosc.engine import Engine
     from robosc.language.configuration import Configuration
     from robosc.run.runtime.core.node_data import NodeData
     from robosc.run.runtime.core.port import Port
+    from robosc.run.runtime.core.violations import Violations
 
 #: Seconds between two warnings of one kind.
 _PAUSE = 5.0
@@ -26,14 +27,21 @@ class StateReporter:
     """Publish the state on every change, and for every new subscription; do nothing without subscriptions."""
 
     def __init__(
-        self, graph: rosgraph.RosGraph, engine: Engine, data: NodeData, port: Port, configuration: Configuration
+        self,
+        graph: rosgraph.RosGraph,
+        data: NodeData,
+        port: Port,
+        configuration: Configuration,
+        violations: Violations,
     ) -> None:
         self._graph = graph
-        self._engine = engine
+        self._engine = violations.engine
         self._data = data
         self._port = port
         self._publishes = configuration.publish_state_information
         self._listeners = 0
+        self._violations = violations
+        self._violated = 0
         self._transitions: deque[str] = deque(maxlen=TRANSITIONS_KEPT)
         shown = reported_variables(graph)
         self._components: list[tuple[str, sct.Plant, Sequence[rosgraph.NodeVariable]]] = [
@@ -57,15 +65,17 @@ class StateReporter:
         if not self._publishes:
             return
         listeners = self._port.report_listeners("state")
-        if listeners > self._listeners or (listeners and self._transitions):
+        violated = list(map(assumption_name, self._violations.assumptions))
+        if listeners > self._listeners or (listeners and (self._transitions or len(violated) > self._violated)):
             report: dict[str, Json] = {
                 "robot": self._graph.name,
                 "time": time,
                 "components": self.components(),
                 "transitions": list(self._transitions),
+                **({"violated": violated} if self._violations.exist else {}),
             }
             self._port.publish_report("state", json_text(report))
-        self._listeners = listeners
+        self._listeners, self._violated = listeners, len(violated)
         self._transitions.clear()
 
     def components(self) -> dict[str, Json]:

@@ -1,0 +1,57 @@
+"""Violations of assumptions: events that the robot causes although an assumption excludes them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.model.semantics.operators import UnreadableError
+from robosc.model.semantics.roles import assumption_name, component_name, event_name
+
+if TYPE_CHECKING:
+    from robosc.engine import Engine
+    from robosc.model import sct
+
+
+class ViolationError(UnreadableError):
+    """Event against assumptions. It counts as an event whose data cannot be read."""
+
+
+class Violations:
+    """Violations since the node started; `stop`: the first one stops the robot.
+
+    `assumptions` are the violated ones, in the order of their first violation. `names` has the name for each violation.
+    """
+
+    def __init__(self, engine: Engine, *, stop: bool) -> None:
+        self.engine = engine
+        self._stop = stop
+        self.exist = any(event.guard.assumption is not None for event in engine.executed.events)
+        self.assumptions: dict[sct.Plant, None] = {}
+        self.names: list[str] = []
+        self._by_component: dict[str, dict[sct.Plant, None]] = {}
+        self._halted = False
+
+    def check(self, event: sct.Event) -> ViolationError | None:
+        """Return the violation of an event that is about to happen; None if no assumption excludes it."""
+        violated = self.engine.violated_assumptions(event_name(event)) if self.exist else []
+        if not violated:
+            return None
+        known = self._by_component.setdefault(component_name(event), {})
+        self.names += map(assumption_name, violated)
+        for assumption in violated:
+            self.assumptions[assumption] = known[assumption] = None
+        return ViolationError(f"violates `{'` and `'.join(assumption.text or '' for assumption in violated)}`")
+
+    @property
+    def stopped(self) -> bool:
+        """Whether a violation has stopped the robot."""
+        return self._stop and bool(self.assumptions)
+
+    def must_halt(self) -> bool:
+        """Return whether the robot is to be stopped now: once, after the first violation."""
+        halted, self._halted = self._halted, self.stopped
+        return self._halted and not halted
+
+    def of(self, component: str) -> list[str]:
+        """Return the names of the assumptions that events of a component have violated."""
+        return list(map(assumption_name, self._by_component.get(component, ())))
