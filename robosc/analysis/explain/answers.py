@@ -52,12 +52,12 @@ class Explanation:
 
     `by` is the first cause that forbids it: plants, assumptions, requirements or synthesis. It is None if nothing
     forbids the event. It is also None if the supervisor never lets the robot reach the state and neither plants nor
-    requirements forbid the event. `plants` and `requirements` are all obstacles. `counterexample` is the consequence if synthesis did not
-    forbid the event; `blamed` are then the requirements that forbid something after the end of that counterexample.
-    `changes` are transitions of the events that can happen now and after which the event can happen. `way` is a
-    shortest trace from here, under the supervisor, to a state that allows the event: empty if this state allows it,
-    None if there is none. `refusal` explains the first event of the trace that the supervisor forbids, if it never lets
-    the robot reach this state.
+    requirements forbid the event. `plants` and `requirements` are all obstacles. `counterexample` is the consequence if
+    synthesis did not forbid the event; `blamed` are then the requirements that forbid something after the end of that
+    counterexample. `changes` are transitions of the events that can happen now and after which the event can happen.
+    `way` is a shortest trace from here, under the supervisor, to a state that allows the event: empty if this state
+    allows it, None if there is none. `refusal` explains the first event of the trace that the supervisor forbids, if it
+    never lets the robot reach this state.
     """
 
     event: sct.Event

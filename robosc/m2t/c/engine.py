@@ -14,7 +14,7 @@ from robosc.model import engine, sct
 from robosc.model import expression as ex
 from robosc.model.reflection import tree
 from robosc.model.semantics.durations import duration_text
-from robosc.model.semantics.roles import is_from_cif
+from robosc.model.semantics.roles import assumption_name, is_from_cif
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -77,7 +77,8 @@ class _Preparation:
     def all(self) -> dict[str, Any]:
         """Return all values by name."""
         readers = self._readers() if self._model.incremental else {}
-        return {**self._declarations(), **self._computations(), **self._loop(), **self._timers(), **readers}
+        parts = (self._declarations(), self._computations(), self._assumptions(), self._loop(), self._timers(), readers)
+        return {name: value for part in parts for name, value in part.items()}
 
     def _enumerator(self, event: engine.Event) -> str:
         return self._names.enumerator(event.event)
@@ -177,6 +178,32 @@ class _Preparation:
                 for alternative in choice.alternatives
                 if alternative.chosen is not None
             ],
+        }
+
+    def _assumptions(self) -> dict[str, Any]:
+        """Return the assumptions, and the conditions under which an event violates each of them."""
+        plants = [plant for plant in self._model.model.plants if plant.kind == sct.PlantKind.assumption]
+        number = {plant: position for position, plant in enumerate(plants)}
+        cases = []
+        for event in self._model.events:
+            reasons = [
+                (number[reason.assumption], self._printer.lines(reason.condition))
+                for reason in event.reasons
+                if reason.assumption is not None and reason.condition is not None
+            ]
+            if reasons:
+                possible = None if event.guard.plants is None else self._printer.lines(event.guard.plants)
+                cases.append({"event": self._enumerator(event), "possible": possible, "reasons": reasons})
+        return {
+            "assumptions": [
+                {
+                    "name": string_literal(assumption_name(plant)),
+                    "text": string_literal(plant.text or ""),
+                }
+                for plant in plants
+            ],
+            "violations": cases,
+            "violations_read_state": any("state->" in line for case in cases for line in _lines_of(case)),
         }
 
     def _loop(self) -> dict[str, Any]:
@@ -316,6 +343,11 @@ def _merged(cases: Sequence[tuple[str, str, list[str], bool]]) -> list[dict[str,
         else:
             merged.append({"events": [event], "comment": remarks, "lines": lines, "old": old})
     return merged
+
+
+def _lines_of(case: dict[str, Any]) -> list[str]:
+    """Return the lines of the conditions of an event's violations."""
+    return [*(case["possible"] or ()), *(line for _, lines in case["reasons"] for line in lines)]
 
 
 def _used_in(condition: engine.Condition) -> str:

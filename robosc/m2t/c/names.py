@@ -5,14 +5,13 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from robosc.model import engine
+from robosc.model import engine, sct
 from robosc.model.semantics.naming import Names, snake_case
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
     from robosc.model import expression as ex
-    from robosc.model import sct
 
 #: Keywords of C99, C11, C23 and C++20, and names that headers and compilers define.
 _KEYWORDS = """
@@ -43,6 +42,8 @@ TAKEN = KEYWORDS.union(_MACROS.split())
 _API = """
 nothing event state inputs settings hooks set supervisor default_settings init enabled perform begin end tick event_name
 """
+#: More names, if the model has assumptions.
+_ASSUMPTIONS = "violates assumption_name assumption_text"
 _SETTINGS = "events_per_tick reactions_per_tick react_immediately resolution_ms"
 
 
@@ -71,7 +72,9 @@ class CNames:
         }
 
     def _name_globals(self, model: sct.SupervisoryControlModel) -> None:
-        names = Names(f"{self.prefix}_{name}" for name in _API.split())
+        assumes = any(plant.kind == sct.PlantKind.assumption for plant in model.plants)
+        api = f"{_API} {_ASSUMPTIONS}" if assumes else _API
+        names = Names(f"{self.prefix}_{name}" for name in api.split())
         owners: list[tuple[str, ex.NamedElement, Sequence[ex.NamedElement]]] = [
             *(("location_name", plant, [*plant.events, *plant.locations]) for plant in model.plants),
             *(("literal_name", enumeration, [*enumeration.literals]) for enumeration in model.enumerations),

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from robosc.language.configuration.parameters import model_parameters
+from robosc.m2t.c.comments import string_literal
 from robosc.m2t.c.expressions import type_name
 from robosc.m2t.ros import reports
 from robosc.m2t.ros.expressions import CppPrinter
@@ -27,6 +28,7 @@ from robosc.model.semantics.messages import (
 )
 from robosc.model.semantics.naming import Names
 from robosc.model.semantics.operators import PRECEDENCE
+from robosc.model.semantics.roles import component_name
 from robosc.model.semantics.typing import DOUBLE, ArrayType, infer
 from robosc.model.semantics.walks import parts
 
@@ -68,7 +70,8 @@ class EventHandler:
     `copy` is the copy of the node's variables. `old` is read while the variables change; `next` changes while the
     variables are read; "" is no copy. A handler that `reads_elements` of arrays changes only a copy. The event does not
     happen if an element is missing; inputs with elements are among the reactions, if a transition reads them. A handler
-    that `reads_reason` reads the reason of an error.
+    that `reads_reason` reads the reason of an error. An event that is `assumed` may violate an assumption; `component`
+    is a literal.
     """
 
     event: str
@@ -79,6 +82,8 @@ class EventHandler:
     reactions: list[Reaction]
     data: reports.EventData | None
     reads_reason: bool = False
+    assumed: bool = False
+    component: str = ""
 
 
 @dataclass(frozen=True)
@@ -95,9 +100,9 @@ class Subscription:
     unread: bool
 
     @property
-    def reads_elements(self) -> bool:
-        """Whether a message may be unreadable."""
-        return any(handler.reads_elements for handler in self.receptions)
+    def may_be_unheard(self) -> bool:
+        """Whether a message may count as not received: unreadable, or against an assumption."""
+        return any(handler.reads_elements or handler.assumed for handler in self.receptions)
 
 
 @dataclass(frozen=True)
@@ -320,6 +325,11 @@ class GeneratedNode:
         return [*self.services, *self.actions]
 
     @property
+    def assumed(self) -> bool:
+        """Whether an event from the robot may violate an assumption."""
+        return any(reason.assumption is not None for event in self._events.values() for reason in event.reasons)
+
+    @property
     def may_withhold(self) -> bool:
         """Whether the data of a command may be impossible to send."""
         messages = [message for publisher in self.publishers for message in publisher.messages]
@@ -473,6 +483,8 @@ class GeneratedNode:
             copy,
             self._merged(reactions, copy),
             data,
+            assumed=any(reason.assumption is not None for reason in self._events[event].reasons),
+            component=string_literal(component_name(event)),
         )
 
     def _merged(self, reactions: Sequence[rosgraph.Reaction], copy: str) -> list[Reaction]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Literal, Protocol
 
 from robosc.base.files.resources import locate
-from robosc.language.configuration import NO_STOP, NO_STOP_ON_SILENCE
+from robosc.language.configuration import NO_STOP, NO_STOP_ON_SILENCE, REPORTS_VIOLATIONS
 from robosc.language.configuration.parameters import controller_parameters, layer_parameters
 from robosc.m2t.c import engine
 from robosc.m2t.ros import preconditions, typed_state
@@ -48,6 +48,7 @@ _HEADERS = {
     "robosc/json": set(),
     "robosc/message_headers": {"composes", "defaults"},
     "robosc/throttle": {"layer", "gates"},
+    "robosc/violations": {"assumptions"},
     "robosc/transitions": {"state"},
     "robosc/unheard": {"controller", "awaits"},
     "robosc/watchdog": {"controller", "subscriptions"},
@@ -234,6 +235,7 @@ class RosTarget:
             writes_log=configuration.write_events_to_log,
             definition=definition_text(graph),
             no_stop=_no_stop(node, configuration),
+            stops_on_violation=node.assumed and configuration.on_violation == "stop",
             awaited=_awaited(node, configuration) if kind == "controller" else [],
             turned=_turned(node) if ros.version == 1 else [],
             has_defaults=has_defaults,
@@ -274,6 +276,7 @@ class RosTarget:
             self.kind: True,
             f"ros{self.ros.version}": True,
             "actions": node.actions,
+            "assumptions": node.assumed,
             "awaits": _awaited(node, configuration),
             "composes": composes,
             "defaults": defaults,
@@ -368,10 +371,11 @@ def launch_path(configuration: Configuration) -> str:
 
 
 def _no_stop(node: GeneratedNode, configuration: Configuration) -> list[tuple[str, str]]:
-    """Return the node's warnings at its start that nothing stops the robot, each with its condition."""
+    """Return the warnings at the node's start that nothing stops the robot, or no violation, with their conditions."""
+    reports = [("", REPORTS_VIOLATIONS)] if node.assumed and configuration.on_violation == "report" else []
     if node.shutdown or not node.publishers:
-        return []
+        return reports
     silence = [("watchdog_stops_", NO_STOP_ON_SILENCE)] if node.subscriptions else []
     if configuration.says_how_to_stop:
-        return silence
-    return [*silence, ("!watchdog_stops_" if silence else "", NO_STOP)]
+        return [*silence, *reports]
+    return [*silence, ("!watchdog_stops_" if silence else "", NO_STOP), *reports]

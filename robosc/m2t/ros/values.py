@@ -54,6 +54,7 @@ class NodeValues:
     writes_log: bool
     definition: str
     no_stop: Sequence[tuple[str, str]]
+    stops_on_violation: bool
     awaited: Sequence[str]
     turned: Sequence[tuple[Variable, str]]
     has_defaults: Callable[[rosgraph.Interface], bool]

@@ -41,6 +41,7 @@ EVERYTHING = {
     "onWithheld": ["halt"],
     "onBlocked": ["velocity"],
     "waitFor": ["/scan"],
+    "onViolation": "report",
     "lifecycle": True,
     "package": {
         "name": "my_robot",

@@ -12,13 +12,19 @@ namespace robosc {
 inline namespace ROBOSC_VERSION {
 
 /// The causes of a blocked command. Only the first kind that has any is reported: another execution that has not ended
-/// (busy), failed requirements, states without a transition for the command, or else consequences that synthesis
-/// prevents.
+/// (busy), violated assumptions, failed requirements, states without a transition for the command, or else consequences
+/// that synthesis prevents.
 class BlockReasons {
  public:
   static BlockReasons busy() {
     BlockReasons reasons;
     reasons.busy_ = true;
+    return reasons;
+  }
+
+  static BlockReasons violated(const std::vector<std::string>& assumptions) {
+    BlockReasons reasons;
+    reasons.assumptions_ = assumptions;
     return reasons;
   }
 
@@ -29,6 +35,7 @@ class BlockReasons {
   void add_consequence(const std::string& text) { consequences_.push_back(text); }
 
   const char* kind() const {
+    if (!assumptions_.empty()) return "assumption";
     return busy_ ? "busy" : !requirements_.empty() ? "requirement" : !states_.empty() ? "state" : "synthesis";
   }
 
@@ -66,10 +73,12 @@ class BlockReasons {
 
  private:
   const std::vector<std::string>& told() const {
+    if (!assumptions_.empty()) return assumptions_;
     return !requirements_.empty() ? requirements_ : !states_.empty() ? states_ : consequences_;
   }
 
   bool busy_ = false;
+  std::vector<std::string> assumptions_;
   std::vector<std::string> requirements_;
   std::vector<std::string> states_;
   std::vector<std::string> consequences_;

@@ -64,7 +64,13 @@ class ComponentStatus {
 
   /// Adds a warning.
   void warn(const std::string& what) {
-    status_.level = Status::WARN;
+    if (status_.level == Status::OK) status_.level = Status::WARN;
+    status_.message += "; " + what;
+  }
+
+  /// Adds an error.
+  void fail(const std::string& what) {
+    status_.level = Status::ERROR;
     status_.message += "; " + what;
   }
 

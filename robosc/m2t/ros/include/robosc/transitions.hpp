@@ -31,16 +31,25 @@ class Transitions {
 
   /// The state and the events that led to it.
   std::string report(const char* robot, double time, const Json& components) const {
-    Json transitions = Json::array();
-    for (const char* event : events_) transitions.add(event);
-    return to_json(Json::object()
-                       .add("robot", robot)
-                       .add("time", time)
-                       .add("components", components)
-                       .add("transitions", transitions));
+    return to_json(reported(robot, time, components));
+  }
+
+  /// The same, with the violated assumptions.
+  std::string report(const char* robot, double time, const Json& components, const Json& violated) const {
+    return to_json(reported(robot, time, components).add("violated", violated));
   }
 
  private:
+  Json reported(const char* robot, double time, const Json& components) const {
+    Json transitions = Json::array();
+    for (const char* event : events_) transitions.add(event);
+    return Json::object()
+        .add("robot", robot)
+        .add("time", time)
+        .add("components", components)
+        .add("transitions", transitions);
+  }
+
   std::deque<const char*> events_;
 };
 
