@@ -383,12 +383,15 @@ class Linker:
         return component
 
     def components(self, element: ex.Located) -> Names:
-        """Return the components that an element can mention. In a library a component can only mention itself.
+        """Return the components that an element can mention.
 
-        A template can also mention itself; other components can only mention its instances.
+        In a library a component can only mention itself; assumptions outside of components can mention all. A template
+        can also mention itself; other components can only mention its instances.
         """
         own = self.around(element, rsc.Component)
         if self._is_library:
+            if own is None and self.around(element, rsc.Assumption) is not None:
+                return self._parts
             return {} if own is None else {own.name: own}
         return ChainMap({own.name: own}, self._parts) if own is not None and own.parameters else self._parts
 
