@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import re
 import shutil
+import subprocess
+from random import Random
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -66,6 +68,7 @@ SENTENCES = {
     "scenarios may play it and `expect A1 violated`": ["scenario"],
     "in a layer the event itself is forwarded": ["layer"],
     "the saved models have it": ["saved"],
+    "generated C checks the same": ["c", "c_and_python_find_the_same_violations"],
     "verify proves the same rows as without it": ["verify"],
     "explain names it as a reason": ["explain"],
     "`assume` stays a name": ["name"],
@@ -619,3 +622,48 @@ def test_format(tmp_path: Path) -> None:
     path = written(tmp_path, changed("  assume A2: response from work needs", "assume A2:response from   work needs"))
     assert command("format", str(path)).exit_code == 0
     assert "  assume A2: response from work needs M1.ready\n" in path.read_text()
+
+
+FOLLOWER = """#include "shop_supervisor.h"
+#include <stdio.h>
+
+int main(void)
+{
+    shop_supervisor robot;
+    unsigned event;
+    shop_init(&robot, NULL, NULL);
+    while (scanf("%u", &event) == 1) {
+        for (unsigned each = 0U; each < SHOP_EVENT_COUNT; ++each) {
+            for (unsigned number = 0U; number < SHOP_ASSUMPTION_COUNT; ++number) {
+                if (shop_violates(&robot, (shop_event)each, number)) {
+                    printf("%s %s;", shop_event_name((shop_event)each), shop_assumption_name(number));
+                }
+            }
+        }
+        printf("\\n");
+        (void)shop_perform(&robot, (shop_event)event);
+    }
+    return 0;
+}
+"""
+
+
+@pytest.mark.skipif(shutil.which("gcc") is None, reason="no C compiler")
+def test_c_and_python_find_the_same_violations(tmp_path: Path) -> None:
+    model = model_of(SHOP)
+    for name, text in supervisor.generate(Models(model), Configuration()).items():
+        (tmp_path / name).write_text(text)
+    (tmp_path / "main.c").write_text(FOLLOWER)
+    flags = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-Wconversion"]
+    program = tmp_path / "follower"
+    subprocess.run(["gcc", *flags, "-o", program, *tmp_path.glob("*.c")], cwd=tmp_path, check=True)
+    engine, random, expected, steps = Engine(model), Random(0), [], []  # noqa: S311 - nothing here is secret
+    names = [event.name for event in engine.executed.events]
+    for _ in range(300):
+        found = [(name, plant.origin) for name in names for plant in engine.violated_assumptions(name)]
+        expected.append("".join(f"{name} {origin};" for name, origin in found))
+        steps.append(random.randrange(len(names)))
+        engine.perform(names[steps[-1]])
+    told = subprocess.run([program], input=" ".join(map(str, steps)), capture_output=True, text=True, check=True)
+    assert told.stdout.split("\n")[:-1] == expected
+    assert len(set(expected)) == 2

@@ -11,6 +11,7 @@ import pytest
 
 from tests.ros.running import PROJECT, Runner
 from tests.ros.workspaces import EXAMPLES, Workspace, middleware
+from tests.test_assumptions import SCENARIO, SHOP
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -132,6 +133,13 @@ def test_two_services_of_one_server(run_ros2: Runner, tmp_path: Path) -> None:
     model.write_text(LIFT, encoding="utf-8")
     status, said = played(run_ros2, run_ros2.ros.python, tmp_path, LIFTS, model=model)
     assert (status, "1 scenario, 0 failed" in said) == (0, True), said
+
+
+def test_a_violated_assumption(run_ros2: Runner, tmp_path: Path) -> None:
+    model = tmp_path / "shop.rscd"
+    model.write_text(SHOP, encoding="utf-8")
+    status, said = played(run_ros2, run_ros2.ros.python, tmp_path, SCENARIO, model=model)
+    assert (status, "3 scenarios, 0 failed" in said) == (0, True), said
 
 
 CARRIER = """\
