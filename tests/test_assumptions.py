@@ -18,15 +18,19 @@ from robosc.analysis.explain.as_text import Renderer
 from robosc.analysis.supervise import supervise
 from robosc.analysis.verify import validate_c, validate_cif, verify_system
 from robosc.analysis.verify.verdict import Outcome
-from robosc.base.diagnostics import Severity
+from robosc.base.diagnostics import ModelError, Severity
 from robosc.engine import Blocked, Engine
+from robosc.language import configuration as config
 from robosc.language.configuration import Configuration
 from robosc.language.configuration.parameters import layer_parameters
 from robosc.m2t import cif, supervisor, xmi
 from robosc.m2t.models import Models
 from robosc.m2t.ros.preconditions import preconditions
+from robosc.m2t.targets import TARGETS
 from robosc.model import sct, validity
 from robosc.model.semantics.messages import find_message
+from robosc.run.node_tests import trace_player
+from robosc.run.node_tests.trace_test import trace_test_of
 from robosc.run.report import report
 from robosc.run.runtime.core.event_loop import EventLoop
 from robosc.run.runtime.core.layer import Layer
@@ -35,6 +39,7 @@ from robosc.run.runtime.core.settings import SafeMessages, Settings
 from robosc.tools.cli import main
 from robosc.tools.view.description import describe
 from tests.language.second_edition import errors, supervised
+from tests.run.node_tests.in_process_node import InProcessNode
 from tests.run.runtime.fake import FakePort, Record, World
 from tests.run.runtime.fake import supervised as graph_of
 
@@ -57,7 +62,7 @@ SENTENCES = {
     "in a batch after the events before it; the others of the batch go on": ["batch"],
     "a violating event happens for no component, and nothing is stored": ["violation"],
     "it counts as not received: watchdogs, `without`": ["watchdog", "without"],
-    "it is logged as `violated`, an error in /diagnostics, and in ~/state": ["violation"],
+    "it is logged as `violated`, an error in /diagnostics, and in ~/state": ["violation", "traces"],
     "a response against an assumption is the error with the reason `unreadable`": ["response", "goal"],
     "onViolation is stop: as a tripped watchdog": ["stop"],
     "a layer blocks every command, cancels running goals and sends what onBlocked names": ["layer"],
@@ -67,7 +72,7 @@ SENTENCES = {
     "simulate refuses the event (by: assumption, with its name)": ["simulate"],
     "scenarios may play it and `expect A1 violated`": ["scenario"],
     "in a layer the event itself is forwarded": ["layer"],
-    "the saved models have it": ["saved"],
+    "the saved models have it": ["saved", "a_saved_assumption_that_does_not_fit"],
     "generated C checks the same": ["c", "c_and_python_find_the_same_violations"],
     "verify proves the same rows as without it": ["verify"],
     "explain names it as a reason": ["explain"],
@@ -667,3 +672,38 @@ def test_c_and_python_find_the_same_violations(tmp_path: Path) -> None:
     told = subprocess.run([program], input=" ".join(map(str, steps)), capture_output=True, text=True, check=True)
     assert told.stdout.split("\n")[:-1] == expected
     assert len(set(expected)) == 2
+
+
+@pytest.mark.parametrize("reaction", ["stop", "report"])
+def test_traces(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, reaction: str) -> None:
+    """The tests of a package play the event log of a scenario with violations against its node."""
+    for name, seconds in {"SETTLED": 0.0, "REACTION": 0.0, "ANSWER": 0.0, "PATIENCE": 0.05}.items():
+        monkeypatch.setattr(trace_player, name, seconds)
+    path, scenarios = written(tmp_path), tmp_path / "shop.scenarios"
+    (tmp_path / "controller-config.json").write_text(json.dumps({"onViolation": reaction}))
+    scenarios.write_text(SCENARIO)
+    assert command("test", str(path), str(scenarios), "--traces", str(tmp_path / "traces")).exit_code == 0
+    graph = graph_of(path)
+    configuration = config.read(tmp_path / "controller-config.json")
+    planned = trace_test_of(TARGETS["ros2"], Models(graph.model, graph), configuration)
+    assert planned is not None
+    connections = json.loads(planned.files["connections.json"])
+    violated = 0
+    for number, trace in enumerate(sorted((tmp_path / "traces").iterdir())):
+        lines = trace_player.read_trace(str(trace))
+        violated += sum(line.direction == "violated" for line in lines)
+        log = tmp_path / f"events{number}.jsonl"
+        node = InProcessNode(connections, graph, configuration, log)
+        trace_player.Player(connections, node, trace_player.Log(str(log))).play(lines)
+    assert violated == 2
+
+
+def test_a_saved_assumption_that_does_not_fit(tmp_path: Path) -> None:
+    model = robosc.to_sct(robosc.load(text=SHOP))
+    plant, _ = assumptions_of(model)
+    plant.locations.append(sct.Location(name="other", initial=False, marked=True))
+    files = xmi.generate(Models(model), Configuration())
+    path = tmp_path / "Shop.sct.xmi"
+    path.write_text(files[path.name])
+    with pytest.raises(ModelError, match="'assumption_A1' needs one location, and edges for responses and feedback"):
+        validity.load(path)

@@ -53,6 +53,14 @@ def _end_of_action(plant: sct.Plant, _model: Model) -> Iterator[Fault]:
         yield plant, f"{message}; generate this model again from its text: `robosc transform MODEL.rscd --to xmi`"
 
 
+def _assumption(plant: sct.Plant, _model: Model) -> Iterator[Fault]:
+    """Check that an assumption is about messages, feedback and responses, and has one location."""
+    kinds = (sct.EventKind.response, sct.EventKind.feedback)
+    fits = len(plant.locations) == 1 and all(edge.event.kind in kinds for edge in edges_of(plant))
+    if plant.kind == sct.PlantKind.assumption and not fits:
+        yield plant, f"the assumption '{plant.name}' needs one location, and edges for responses and feedback only"
+
+
 def _initial_value(variable: sct.DiscreteVariable, model: Model) -> Iterator[Fault]:
     if variable.initial is None:
         if not is_from_cif(model.root):
@@ -219,7 +227,13 @@ CHECKS: Checks = {
     ex.Expression: [fitting_operands],
     sct.SupervisoryControlModel: [unique("plants", "enumerations"), _used, _predicates],
     ex.Enumeration: [unique("literals")],
-    sct.Plant: [unique("events", "inputs", "variables", "locations"), _initial_location, _one_edge, _end_of_action],
+    sct.Plant: [
+        unique("events", "inputs", "variables", "locations"),
+        _initial_location,
+        _one_edge,
+        _end_of_action,
+        _assumption,
+    ],
     object: [_references],
     sct.Input: [_PLAIN],
     sct.DiscreteVariable: [
