@@ -353,8 +353,11 @@ class EventHandler:
             return None
         source, message = self._received
         if source is not event:
-            logged = self._unread[source].read(self._data, message) or {"value": {}}
-            return {**logged, **self._logged[event].reason(self._data)}
+            # A response without data that the node reads may still violate an assumption.
+            logged = self._unread[source].read(self._data, message) or (
+                {"value": {}} if self._unread[source].parts else {}
+            )
+            return {**logged, **self._logged[event].reason(self._data)} or None
         return self._logged[event].read(self._data, message) if event in self._logged else None
 
     # Contents of `/diagnostics`
