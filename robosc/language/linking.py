@@ -610,7 +610,9 @@ class Linker:
             )
         elif word is None:
             call = f"{escape_keyword(name.text)}.{RUNNING_WORD}"
-            self._report(name, f"`{name.text}` can be read as `{call}` only", Repair(f"write `{call}`", call))
+            self._report(
+                name, f"`{name.text}` can be read as `{call}` only", Repair(f"write `{call}`", choices=(call,))
+            )
         elif word.text == RUNNING_WORD:
             other = behind[1] if len(behind) > 1 and behind[1] is not None else word
             rest = (self._point_before(other).start, other.end, "")

@@ -36,6 +36,10 @@ _FOREIGN = {
     "\N{RIGHT DOUBLE QUOTATION MARK}": '"',
     ";": "",
 }
+#: Symbols that bind closer than comparisons in other languages.
+_BITWISE = {"&", "|"}
+_COMPARISONS = {"=", "!=", "<", "<=", ">", ">=", "==", "===", "<>", *_BITWISE}
+_ENDS_OF_OPERANDS = ("and", "or", "&&", "||", "=>", ",", "(", ")", "{", "}", "if", "do", "goto", "needs", "disables")
 #: Hints for words of other languages, and for words of RoboSC in a wrong place.
 _CONSTANT = "write `constant name: type = value`"
 _PARAMETER = "write `parameter name: type = value` in the robot, a library or a component"
@@ -82,8 +86,6 @@ _WRITTEN = {
     "param": "parameter",
     **dict.fromkeys(("timeout", "timer", "wait", "delay", "sleep"), "after"),
     **dict.fromkeys(("def", "fn", "func", "fun"), "function"),
-    "never": "requirement never",
-    "always": "requirement always",
     "reachable": "property reachable",
     "forall": "all",
     "exists": "any",
@@ -250,11 +252,32 @@ def _foreign(tokens: Tokens, index: int) -> Repair:
     own = _FOREIGN[tokens[index].text]
     hint_text = f"write `{own}`" if own else "leave it out: RoboSC has no semicolons"
     if own != '"':
-        return Repair(hint_text, own)
+        return Repair(hint_text, own, is_offered=_binds_otherwise(tokens, index))
     others = _other_quotes(tokens, index)
     # An unclosed string would reach the end of the line, and a string around a comment would swallow it.
     is_whole = others and not tokens.has_comment(tokens[index].start, others[-1][1])
     return Repair(hint_text, own, elsewhere=others) if is_whole else Repair(hint_text)
+
+
+def _binds_otherwise(tokens: Tokens, index: int) -> bool:
+    """Return whether a symbol may bind otherwise in its own language: `a == b == c`, `a & b == c`."""
+    if tokens[index].text in _BITWISE:
+        return True
+    return tokens[index].text in {"==", "==="} and any(
+        _has_comparison(tokens, index, direction) for direction in (-1, 1)
+    )
+
+
+def _has_comparison(tokens: Tokens, index: int, direction: int) -> bool:
+    """Return whether a comparison or bitwise symbol is beside the one at `index`, in the same line and operand."""
+    at = index + direction
+    while 0 < at < len(tokens) - 1 and not tokens[max(at, at - direction)].is_first:
+        if tokens[at].text in _COMPARISONS:
+            return True
+        if tokens[at].is_keyword(*_ENDS_OF_OPERANDS):
+            return False
+        at += direction
+    return False
 
 
 def _before(token: Token, hint_text: str, text: str) -> Repair:
@@ -284,6 +307,10 @@ def _both_sides(tokens: Tokens, index: int) -> Repair:
     hint_text = "a number has digits on both sides of its point, such as `0.5` or `1.0`"
     point = next((at for at in (index, index - 1) if tokens[at].text == "."), index)
     before, token, after = tokens[point - 1], tokens[point], tokens[point + 1]
+    if ".." in {before.text, after.text}:
+        return Repair(
+            "a range has two points, such as `0..5`", elsewhere=((token.start, token.end, ""),), is_offered=True
+        )
     is_after = before.kind is Kind.NUMBER and before.end == token.start
     if is_after and not (after.kind is Kind.NUMBER and after.start == token.end):
         return Repair(hint_text, elsewhere=((token.end, token.end, "0"),))
@@ -376,6 +403,9 @@ def _construct(word: Token) -> Repair | str:
     """Return the hint for a misused word, with an edit if a single word replaces it."""
     if word.text == "not":
         return Repair(_MEANT["not"], elsewhere=((word.start, word.end, "!"),))
+    if word.text in {"never", "always"}:
+        # A requirement restricts the robot, a property does not.
+        return Repair(_INVARIANT, choices=(f"requirement {word.text}", f"property {word.text}"))
     text = _WRITTEN.get(word.text)
     if text is None:
         return _MEANT[word.text]
@@ -406,10 +436,11 @@ def _word_hint(tokens: Tokens, index: int, expectations: Sequence[str], block: B
 def keyword_hint(word: str, close: str) -> Repair | str:
     """Return the hint for a word similar to a keyword.
 
-    If the word begins or ends with the keyword, the hint is a missing blank.
+    If the word begins or ends with the keyword, the hint is a missing blank. A word is never replaced without a choice:
+    the closest keyword of `with` may be `without`.
     """
     if word.startswith(close):
         return f"is a space missing after `{close}`?"
     if word.endswith(close):
         return f"is a space missing before `{close}`?"
-    return Repair(f"did you mean `{close}`?", close)
+    return offer_name(close)

@@ -25,6 +25,7 @@ from robosc.model.semantics.typing import (
     Type,
     declared_type,
 )
+from robosc.model.semantics.walks import parts
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -106,8 +107,13 @@ def literal_repair(expression: ex.Expression, actual: Type, expected: Type) -> R
 def equality_repair(operator: ex.Equation | ex.Inequation, left: Type, right: Type) -> tuple[ex.Expression, Hint]:
     """Return the place and the repair of a comparison of two types: a literal to rewrite, else the whole."""
     sides = ((operator.right, right, left), (operator.left, left, right))
+    # In other languages `/` divides integers, with another result.
+    has_division = any(isinstance(part, ex.Division) for part in parts(operator))
     for expression, actual, expected in sides:
         literal = literal_repair(expression, actual, expected)
+        if isinstance(literal, Repair) and has_division:
+            hint = f"{literal.hint}: `/` is a division of doubles"
+            return expression, Replacement(hint, str(literal.text), expression, is_choice=True)
         if literal:
             return expression, literal
     for expression, actual, expected in sides:
