@@ -107,11 +107,10 @@ def literal_repair(expression: ex.Expression, actual: Type, expected: Type) -> R
 def equality_repair(operator: ex.Equation | ex.Inequation, left: Type, right: Type) -> tuple[ex.Expression, Hint]:
     """Return the place and the repair of a comparison of two types: a literal to rewrite, else the whole."""
     sides = ((operator.right, right, left), (operator.left, left, right))
-    # In other languages `/` divides integers, with another result.
-    has_division = any(isinstance(part, ex.Division) for part in parts(operator))
     for expression, actual, expected in sides:
         literal = literal_repair(expression, actual, expected)
-        if isinstance(literal, Repair) and has_division:
+        # In other languages `/` divides integers, with another result.
+        if isinstance(literal, Repair) and any(isinstance(part, ex.Division) for part in parts(operator)):
             hint = f"{literal.hint}: `/` is a division of doubles"
             return expression, Replacement(hint, str(literal.text), expression, is_choice=True)
         if literal:
