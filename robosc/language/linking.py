@@ -617,7 +617,7 @@ class Linker:
             other = behind[1] if len(behind) > 1 and behind[1] is not None else word
             rest = (self._point_before(other).start, other.end, "")
             message = f"`{escape_keyword(name.text)}.{RUNNING_WORD}` has no members"
-            self._report(other, message, Repair(f"leave `.{other.text}` out", elsewhere=(rest,)))
+            self._report(other, message, Repair(f"leave `.{other.text}` out", elsewhere=(rest,), is_offered=True))
         else:
             repair = did_you_mean(word.text, [RUNNING_WORD], cutoff=0.6)
             message = f"only `{RUNNING_WORD}` of `{name.text}` can be read, not `{word.text}`"

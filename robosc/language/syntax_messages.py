@@ -409,7 +409,9 @@ def _construct(word: Token) -> Repair | str:
     text = _WRITTEN.get(word.text)
     if text is None:
         return _MEANT[word.text]
-    return Repair(_MEANT[word.text], elsewhere=((word.start, word.end, text),))
+    # Other languages declare variables with these words, too.
+    is_offered = word.text in {"let", "val"}
+    return Repair(_MEANT[word.text], elsewhere=((word.start, word.end, text),), is_offered=is_offered)
 
 
 def _word_hint(tokens: Tokens, index: int, expectations: Sequence[str], block: Block) -> Repair | str | None:
