@@ -250,6 +250,8 @@ def test_a_name_is_offered_and_never_replaced(name: str, close: str) -> None:
     assert fixed(content) == content
 
 
+TIME = "write `after 3.0 s goto state` in a state, or `after 500 ms without message goto state` for a silent topic"
+CONDITION = "write the condition after the event, as in `on … if … do … goto …`"
 OFFERED = """robot Cart {
   parameter gain: double(0.5..9.5) = 1.0
   component Base {
@@ -290,6 +292,12 @@ OFFERED = """robot Cart {
         ("near = value", "near == value == true", ["="]),
         ("near = value", "near & value == true", ["and"]),
         ("requirement always", "always", ["requirement always", "property always"]),
+        ("near = value", "near == value\n == true", ["="]),
+        ("Base.near or Base.load = 2", "Base.near; (Base.load = 2)", ["leave it out: RoboSC has no semicolons"]),
+        ("scan do near := value goto moving", "scan timeout 3 s goto moving", [TIME]),
+        ("on request to check", "when near goto moving", ["if", "transition if"]),
+        ("on response from scan do", "if near on response from scan do", [CONDITION]),
+        ("requirement go", "requirement { go => check }", [","]),
     ],
 )
 def test_an_edit_that_may_mean_something_else_is_only_offered(old: str, new: str, offers: list[str]) -> None:
@@ -301,9 +309,32 @@ def test_an_edit_that_may_mean_something_else_is_only_offered(old: str, new: str
     assert [offer for offer in offers if offer not in titles and f"write `{offer}`" not in titles] == []
 
 
-def test_a_comparison_by_itself_is_mended() -> None:
-    assert fixed(OFFERED.replace("near = value", "near == value")) == OFFERED
-    assert fixed(OFFERED.replace("Base.near or", "Base.near ||")) == OFFERED
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("near = value", "near == value"),
+        ("Base.near or", "Base.near ||"),
+        ("or Base.load = 2", "or Base.load = 2;"),
+        ("or Base.load = 2", "or True"),
+        ("always Base.idle or Base.moving", "always Base.idle implies Base.moving"),
+        ("integer(0..3)", "integer[0..3]"),
+        ("5.0 s", "5.0 seconds"),
+        ("5.0 s", "5.0 minutes"),
+        ("go with type", 'go with topic: "/go", type'),
+        ("requirement go needs", "requirement go, check needs"),
+        ("variable near", "variable\N{NO-BREAK SPACE}near"),
+        ("on error from check", "on cancelled from drive"),
+    ],
+)
+def test_a_word_or_symbol_with_one_meaning_is_mended(old: str, new: str) -> None:
+    drive = "    action drive with request: none, response: none, feedback: none\n    behaviour"
+    base = OFFERED.replace("    behaviour", drive) if "drive" in new else OFFERED
+    usual = {"||": "or", "True": "true", "implies": "=>", "[": "(", "]": ")", "seconds": "s", "minutes": "min"}
+    usual |= {"topic": "identifier", "go, check": "{ go, check }", "cancelled": "canceled", "==": "=", ";": ""}
+    mended = new.replace("\N{NO-BREAK SPACE}", " ")
+    for word, other in usual.items():
+        mended = mended.replace(word, other)
+    assert fixed(base.replace(old, new)) == base.replace(old, mended)
 
 
 def test_an_arrow_is_no_implication_where_a_state_may_follow() -> None:
@@ -422,9 +453,9 @@ def test_a_syntax_error_that_becomes_another_one_stays() -> None:
 
 
 def test_errors_of_one_item_of_which_one_hides_the_next() -> None:
-    content = DOORS.replace("needs Door.eager", "needs not Door.eager or not Door.locked")
-    assert fixed(content) == content.replace("not ", "! ")
-    hopeless = DOORS.replace("needs Door.eager", "needs not Door.eager or not Door.{")
+    content = DOORS.replace("needs Door.eager", "needs Door.eager || Door.locked && Door.eager")
+    assert fixed(content) == content.replace("||", "or").replace("&&", "and")
+    hopeless = DOORS.replace("needs Door.eager", "needs Door.eager || Door.locked && Door.{")
     assert fixed(hopeless) == hopeless
 
 
