@@ -9,13 +9,15 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from robosc.base.diagnostics import Related, Repair
 from robosc.base.interruption import checkpoint
+from robosc.base.ros_types.wire import FOLDERS
 from robosc.language.failures import expects_failure
 from robosc.language.interface_types import declare, is_made, link_interface, ros_properties, ros_property
 from robosc.language.scopes import File, NameKind, Names, Scope, by_name
+from robosc.language.spellings import NEGATION, folder
 from robosc.language.syntax_messages import BASIC_TYPES, CONSTRUCTS, did_you_mean
 from robosc.model import expression as ex
 from robosc.model import robosc as rsc
-from robosc.model.semantics.communication import RUNNING_WORD
+from robosc.model.semantics.communication import RUNNING_WORD, section_of
 from robosc.model.semantics.expansion import constant_value
 from robosc.model.semantics.failures import FAILURE, FAILURES
 from robosc.model.semantics.naming import enumeration, escape_keyword
@@ -40,6 +42,7 @@ if TYPE_CHECKING:
     from robosc.base.ros_types import RosTypes
     from robosc.language.builder import Name
     from robosc.language.tokens import Token
+    from robosc.model.places import Place
     from robosc.model.semantics.instances import Resolved
 
 _Element = TypeVar("_Element")
@@ -203,10 +206,14 @@ class Linker:
             case rsc.CommunicationType():
                 name = names["interface"]
                 element.interface = self._definition(rsc.Interface, "interface", NameKind.INTERFACE, name)
+                if element.interface is not None:
+                    self._folder(element.interface.source, type(element).__name__.lower(), name)
             case rsc.InterfaceTypeReference():
                 unknown = declare(element, self.interfaces)
                 if unknown is not None:
                     self._report(names["type"], *unknown)
+                else:
+                    self._folder(element.source, section_of(element).kind, names["type"])
             case rsc.ErrorReason():
                 assert self._file.predefined is not None
                 element.enumeration = self._file.predefined.declared[rsc.ComplexDataType][FAILURE]
@@ -215,6 +222,19 @@ class Linker:
                 definition = self._definition(rsc.ComplexDataType, "object or enum", NameKind.DATA_TYPE, name)
                 if definition is not None:
                     element.type = definition
+
+    def _folder(self, source: Place | None, kind: str, name: Name) -> None:
+        """Report a folder in the name of a ROS type, such as `msg`, that is not the one of its kind."""
+        if source is None:
+            return
+        text, span = self._file.text, source.span
+        if source.file is not text.source_file and source.file is not None:
+            text = source.file.parsed.text
+        start, end = text.offset(span.line, span.column), text.offset(span.end_line, span.end_column)
+        written = folder(text.tokens, start, end)
+        if written is not None and written.text != FOLDERS[kind]:
+            message = f"`{written.text}` holds no types of the kind {kind}, expected `{FOLDERS[kind]}`"
+            self._report(name, message, "leave the folder out, or name another type")
 
     def _use(self, element: ex.Located, names: Mapping[str, Name]) -> None:
         match element:
@@ -287,9 +307,21 @@ class Linker:
             self._ambiguous("function", name, [file for file, _ in matches])
         elif matches:
             call.function = matches[0][1]
+        elif name.text == NEGATION and len(call.arguments) == 1:
+            self._negate(call)
         elif not self._file.may_declare(name.text, NameKind.NAMED):
             known = [*functions, *self.scope.usable(rsc.Function), *FUNCTIONS]
             self._missing(name, "there is no function", known, did_you_mean(name.text, known, cutoff=0.6) or _FUNCTION)
+
+    def _negate(self, call: Any) -> None:
+        """Replace `not (x)` by the negation of `x`: no text declares a function of that name."""
+        negation = ex.Negation(operand=call.arguments[0], source=call.source)
+        around, feature = call.eContainer(), call.eContainmentFeature()
+        values = getattr(around, feature.name)
+        if feature.many:
+            values[values.index(call)] = negation
+        else:
+            setattr(around, feature.name, negation)
 
     def _quantified_template(self, quantifier: rsc.InstanceQuantifier, name: Name) -> None:
         own = self._file.declared[rsc.Component]
@@ -613,12 +645,14 @@ class Linker:
             )
         elif word is None:
             call = f"{escape_keyword(name.text)}.{RUNNING_WORD}"
-            self._report(name, f"`{name.text}` can be read as `{call}` only", Repair(f"write `{call}`", call))
+            self._report(
+                name, f"`{name.text}` can be read as `{call}` only", Repair(f"write `{call}`", choices=(call,))
+            )
         elif word.text == RUNNING_WORD:
             other = behind[1] if len(behind) > 1 and behind[1] is not None else word
             rest = (self._point_before(other).start, other.end, "")
             message = f"`{escape_keyword(name.text)}.{RUNNING_WORD}` has no members"
-            self._report(other, message, Repair(f"leave `.{other.text}` out", elsewhere=(rest,)))
+            self._report(other, message, Repair(f"leave `.{other.text}` out", elsewhere=(rest,), is_offered=True))
         else:
             repair = did_you_mean(word.text, [RUNNING_WORD], cutoff=0.6)
             message = f"only `{RUNNING_WORD}` of `{name.text}` can be read, not `{word.text}`"
