@@ -36,12 +36,15 @@ from robosc.run.runtime.core.event_loop import EventLoop
 from robosc.run.runtime.core.layer import Layer
 from robosc.run.runtime.core.port import GoalOutcome
 from robosc.run.runtime.core.settings import SafeMessages, Settings
+from robosc.synthesis import count, synthesize
 from robosc.tools.cli import main
 from robosc.tools.view.description import describe
 from tests.language.second_edition import errors, supervised
+from tests.random_assumptions import assuming_robot
 from tests.run.node_tests.in_process_node import InProcessNode
 from tests.run.runtime.fake import FakePort, Record, World
 from tests.run.runtime.fake import supervised as graph_of
+from tests.synthesis.test_against_oracle import check as check_by_search
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -55,7 +58,7 @@ SENTENCES = {
     "names of assumptions are unique as those of requirements": ["names"],
     "the condition has no `value` and no requirement automata": ["conditions"],
     "it stands in robots, libraries and components": ["places", "library"],
-    "to synthesis it is a plant with one location": ["plant"],
+    "to synthesis it is a plant with one location": ["plant", "explicit_search"],
     "`uncontrolled_states` includes it": ["plant"],
     "in CIF it is that plant": ["cif"],
     "the node checks it in the state right before the event": ["batch"],
@@ -64,7 +67,8 @@ SENTENCES = {
     "it counts as not received: watchdogs, `without`": ["watchdog", "without"],
     "it is logged as `violated`, an error in /diagnostics, and in ~/state": ["violation", "traces"],
     "a response against an assumption is the error with the reason `unreadable`": ["response", "goal"],
-    "onViolation is stop: as a tripped watchdog": ["stop"],
+    "onViolation is stop: as a tripped watchdog": ["stop", "generated_nodes"],
+    "until the node is started or activated anew": ["stop", "a_managed_node_begins_anew"],
     "a layer blocks every command, cancels running goals and sends what onBlocked names": ["layer"],
     "onViolation is report: the robot goes on, with warnings": ["report", "warnings"],
     "warning `assumption-unused`": ["unused"],
@@ -707,3 +711,48 @@ def test_a_saved_assumption_that_does_not_fit(tmp_path: Path) -> None:
     path.write_text(files[path.name])
     with pytest.raises(ModelError, match="'assumption_A1' needs one location, and edges for responses and feedback"):
         validity.load(path)
+
+
+def generated(folder: Path, target: str, **settings: Any) -> str:
+    """Return the source of a node of the cart."""
+    graph = graph_of(written(folder, DRIVE))
+    files = robosc.generate(target, Models(graph.model, graph), Configuration(**settings))
+    return next(text for path, text in files.items() if path.endswith("_node.cpp"))
+
+
+@pytest.mark.parametrize("target", ["ros1", "ros2", "ros2-layer"])
+def test_generated_nodes(tmp_path: Path, target: str) -> None:
+    stopping = generated(tmp_path, target, on_shutdown=["velocity"], on_blocked=["velocity"])
+    assert 'if (violates(cart_message_opened_u_response, "Door")) {' in stopping
+    assert stopping.count("stop_if_violated();") > 3
+    assert 'log_.write(seconds(), "violated", cart_event_name(cart_action_drive_u_response));' in stopping
+    assert ("violations_.empty() && " in stopping) == (target == "ros2-layer")
+    reporting = generated(tmp_path, target, on_violation="report")
+    assert "violates(" in reporting
+    assert "stop_if_violated" not in reporting
+    assert "onViolation is report" in reporting
+
+
+def test_a_managed_node_begins_anew(tmp_path: Path) -> None:
+    """Its activation ends the stop."""
+    text = generated(tmp_path, "ros2", lifecycle=True)
+    activation = text[text.index("void activate()") : text.index("void deactivate()")]
+    assert "violations_ = Violations<cart_event>();" in activation
+    assert "if (!active_ || !violations_.must_halt()) return;" in text
+
+
+def test_explicit_search() -> None:
+    """Synthesis agrees with an explicit search, also for random robots."""
+    searched = 0
+    for text in [SHOP, DRIVE, *map(assuming_robot, range(40))]:
+        try:
+            model = robosc.to_sct(robosc.load(text=text))
+        except ModelError:  # it imports a library that is not there
+            continue
+        inputs = [carried for plant in model.plants for carried in plant.inputs]
+        counted = count(model)
+        if len(inputs) > 4 or counted.uncontrolled_states is None or counted.uncontrolled_states > 300:
+            continue
+        check_by_search(model, synthesize(model))
+        searched += any(plant.kind == sct.PlantKind.assumption for plant in model.plants)
+    assert searched > 4
