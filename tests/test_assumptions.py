@@ -44,6 +44,7 @@ from tests.random_assumptions import assuming_robot
 from tests.run.node_tests.in_process_node import InProcessNode
 from tests.run.runtime.fake import FakePort, Record, World
 from tests.run.runtime.fake import supervised as graph_of
+from tests.searching import examples
 from tests.synthesis.test_against_oracle import check as check_by_search
 
 if TYPE_CHECKING:
@@ -58,7 +59,7 @@ SENTENCES = {
     "names of assumptions are unique as those of requirements": ["names"],
     "the condition has no `value` and no requirement automata": ["conditions"],
     "it stands in robots, libraries and components": ["places", "library"],
-    "to synthesis it is a plant with one location": ["plant", "explicit_search"],
+    "to synthesis it is a plant with one location": ["plant", "explicit_search", "explicit_search_of_random_robots"],
     "`uncontrolled_states` includes it": ["plant"],
     "in CIF it is that plant": ["cif"],
     "the node checks it in the state right before the event": ["batch"],
@@ -741,10 +742,16 @@ def test_a_managed_node_begins_anew(tmp_path: Path) -> None:
     assert "if (!active_ || !violations_.must_halt()) return;" in text
 
 
-def test_explicit_search() -> None:
-    """Synthesis agrees with an explicit search, also for random robots."""
+@pytest.mark.parametrize("text", [SHOP, DRIVE], ids=["shop", "cart"])
+def test_explicit_search(text: str) -> None:
+    model = robosc.to_sct(robosc.load(text=text))
+    check_by_search(model, synthesize(model))
+
+
+@pytest.mark.slow
+def test_explicit_search_of_random_robots() -> None:
     searched = 0
-    for text in [SHOP, DRIVE, *map(assuming_robot, range(40))]:
+    for text in map(assuming_robot, range(examples(12))):
         try:
             model = robosc.to_sct(robosc.load(text=text))
         except ModelError:  # it imports a library that is not there
@@ -755,4 +762,4 @@ def test_explicit_search() -> None:
             continue
         check_by_search(model, synthesize(model))
         searched += any(plant.kind == sct.PlantKind.assumption for plant in model.plants)
-    assert searched > 4
+    assert searched > 0
