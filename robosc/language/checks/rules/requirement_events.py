@@ -13,7 +13,7 @@ from robosc.language.checks.definitions import (
     statements,
     transitions,
 )
-from robosc.language.checks.edits import Choice, Removal, part_of
+from robosc.language.checks.edits import Choice, Insertion, Removal, Replacement, part_of
 from robosc.language.checks.libraries import instances
 from robosc.language.checks.rule import Finding, rule
 from robosc.model import robosc as rsc
@@ -65,15 +65,26 @@ def _assumed(named: rsc.EventReference) -> Iterator[Finding]:
     if event is None or communication is None or event.kind in _FROM_ROBOT:
         return
     maker = "the controller decides on" if event.kind in CONTROLLABLE else "the node itself makes"
-    is_action = isinstance(communication, rsc.Action)
-    hint = "write a requirement"
-    if not isinstance(communication, rsc.Message):
-        hint = f"the robot causes its `response`{' and its `feedback`' if is_action else ''}"
+    hint = "write a requirement" if isinstance(communication, rsc.Message) else _answers(named, communication)
     yield Finding(
         named,
         f"{maker} the {event.name} of `{communication.name}`, expected an outgoing message, feedback or a response",
         hint,
     )
+
+
+def _answers(named: rsc.EventReference, communication: rsc.CommunicationType) -> Choice:
+    """Return the choice of the answer that an assumption is about."""
+    name, whole, communicated = escape_keyword(communication.name), part_of(named), part_of(named.communicationType)
+    ways: list[Way] = []
+    kinds = ("response", "feedback") if isinstance(communication, rsc.Action) else ("response",)
+    for kind in kinds:
+        hint = f"write `{kind} from {name}`"
+        if isinstance(named, rsc.NamedEvent):
+            ways.append(Replacement(hint, f"{kind} from", whole.until(communicated), is_choice=True))
+        else:
+            ways.append(Insertion(hint, f"{kind} from ", named, is_choice=True))
+    return Choice(f"write {enumeration(f'`{kind} from {name}`' for kind in kinds)}", tuple(ways))
 
 
 def _about_several(library: rsc.Library) -> Iterator[Finding]:
