@@ -155,15 +155,15 @@ class RosTypes:
 
     def constants(self, package: str, name: str, kind: str) -> list[Mapping[str, Value]]:
         """Return the constants of each section of a type of a kind, by name, in the ROS versions that have the type."""
-        found: list[Mapping[str, Value]] = []
+        by_section: list[Mapping[str, Value]] = []
         for distribution in self.distributions:
             for section in Section:
                 try:
                     fields = distribution.fields(package, name, section) if section.kind == kind else None
                 except DefinitionError:
                     continue
-                found += [fields.constants] if fields is not None else []
-        return found
+                by_section += [fields.constants] if fields is not None else []
+        return by_section
 
     def other_kinds(self, package: str, name: str, kind: str) -> list[str]:
         """Return the other kinds (`service`, `action`) that have a type of this name."""
