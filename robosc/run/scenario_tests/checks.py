@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from robosc.base.diagnostics import Diagnostic
     from robosc.base.ros_types import RosTypes
     from robosc.model import rosgraph
-    from robosc.run.scenario_tests.reading import Scenario
+    from robosc.run.scenario_tests.reading import Line, Scenario
 
 #: Kinds of events that end a call or a goal, except the responses of messages.
 _ENDS = (sct.EventKind.response, sct.EventKind.error, sct.EventKind.canceled)
@@ -64,18 +64,23 @@ def _about_events(model: sct.SupervisoryControlModel, scenario: Scenario) -> Ite
             if named is line:
                 yield line.fault(error.message, error.hint or None)
             continue
-        match line:
-            case Every():
-                repeated.add(event)
-                if event.kind in _ENDS and plant_of(event).kind != sct.PlantKind.message:
-                    hint = "write this line without `every`: it ends its call or goal"
-                    yield line.fault(f"the {words(event)} cannot be repeated", hint)
-            case Stop() if event not in repeated:
-                yield line.fault(f"no `every` before this line repeats the {words(event)}", "leave it out")
-            case IncomingEvent():
-                yield from _impossible(line, event)
-            case SentCommand() if not event.controllable:
-                yield line.fault(f"the {words(event)} comes from the robot, not from the controller")
+        yield from _about_event(line, event, is_repeated=event in repeated)
+        if isinstance(line, Every):
+            repeated.add(event)
+        elif isinstance(line, Stop):
+            repeated.discard(event)
+
+
+def _about_event(line: Line, event: sct.Event, *, is_repeated: bool) -> Iterator[Diagnostic]:
+    if isinstance(line, IncomingEvent):
+        yield from _impossible(line, event)
+    elif isinstance(line, SentCommand) and not event.controllable:
+        yield line.fault(f"the {words(event)} comes from the robot, not from the controller")
+    elif isinstance(line, Stop) and not is_repeated:
+        yield line.fault(f"no `every` before this line repeats the {words(event)}", "leave it out")
+    elif isinstance(line, Every) and event.kind in _ENDS and plant_of(event).kind != sct.PlantKind.message:
+        hint = "write this line without `every`: it ends its call or goal"
+        yield line.fault(f"the {words(event)} cannot be repeated", hint)
 
 
 def _impossible(line: IncomingEvent, event: sct.Event) -> Iterator[Diagnostic]:

@@ -6,13 +6,19 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from robosc.analysis.explain import NamingError
-from robosc.run.node_tests.messages import Record
+from robosc.base.ros_types import Section, wire
+from robosc.run.node_tests.messages import Record, new_value
 from robosc.run.node_tests.trace_player import same
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from robosc.base.ros_types import RosDistribution
     from robosc.run.node_tests.samples import LoggedValue
+
+
+#: Types of fields that the node sets itself.
+_OF_THE_MOMENT = ("builtin_interfaces/Time", "std_msgs/Header")
 
 
 def is_raw(reads: Sequence[LoggedValue], data: Any) -> bool:
@@ -78,20 +84,56 @@ def _has(expected: Any, actual: Any) -> bool:
     return same(expected, actual)
 
 
-def sent_data(entry: Mapping[str, Any], message: Any, expected: Any) -> Any:
-    """Return the data of a line of the log, in the form of the expected data: an object or a single value.
-
-    An object has the fields of the message, which also has the objects that are forwarded unchanged.
-    """
-    logged = entry.get("data", {}).get("value")
-    return _plain(message) if isinstance(logged, dict) or isinstance(expected, dict) else logged
-
-
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
     """Return data of ROS as JSON."""
     if isinstance(value, Record):
-        return {name: _plain(inner) for name, inner in vars(value).items() if name != "wire_types"}
-    return [_plain(inner) for inner in value] if isinstance(value, list) else value
+        return {name: plain(inner) for name, inner in vars(value).items() if name != "wire_types"}
+    return [plain(inner) for inner in value] if isinstance(value, list) else value
+
+
+def sent_data(entry: Mapping[str, Any], message: Any) -> Any:
+    """Return the data of a line of the log; an object also has the objects that are forwarded unchanged."""
+    logged = entry.get("data", {}).get("value")
+    return plain(message) if isinstance(logged, dict) else logged
+
+
+def with_defaults(
+    distribution: RosDistribution, kind: wire.WireType, section: Section, value: Any, forwarded: Sequence[Sequence[str]]
+) -> Any:
+    """Return sent data of a type with the defaults of ROS in all fields that the node does not set.
+
+    Objects at the paths `forwarded` have no defaults: the data shows only their known fields.
+    """
+    if any(not path for path in forwarded):
+        return value
+    if isinstance(kind, wire.Sequence) and isinstance(value, list):
+        return [with_defaults(distribution, kind.element, Section.MESSAGE, element, ()) for element in value]
+    if not isinstance(kind, wire.NestedType) or not isinstance(value, dict):
+        return value
+    try:
+        fields = distribution.fields(kind.package, kind.name, section) or {}
+    except wire.DefinitionError:
+        fields = {}
+    whole = dict(value)
+    for name, field in fields.items():
+        if name in value:
+            inner = [path[1:] for path in forwarded if path[0] == name]
+            whole[name] = with_defaults(distribution, field, Section.MESSAGE, value[name], inner)
+        elif str(field) not in _OF_THE_MOMENT:
+            whole[name] = plain(new_value(field, Section.MESSAGE, distribution))
+    return whole
+
+
+def with_expected_defaults(sent: Any, whole: Any, expected: Any) -> Any:
+    """Return sent data with the defaults of the expected fields; `whole` has all defaults."""
+    if not isinstance(whole, dict) or not isinstance(expected, dict):
+        return whole if sent is None else sent
+    fields = sent if isinstance(sent, dict) else {}
+    names = [name for name in expected if name in whole]
+    return {
+        **fields,
+        **{name: with_expected_defaults(fields.get(name), whole[name], expected[name]) for name in names},
+    }
 
 
 def first_unknown(expected: Any, actual: Any, handed_on: Sequence[Sequence[str]], path: tuple[str, ...] = ()) -> str:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robosc.analysis.explain import NamingError, find_event
 from robosc.analysis.wording import name, quote_requirements, words
+from robosc.base.ros_types.wire import NestedType
 from robosc.engine import Blocked
 from robosc.model import rosgraph, sct
 from robosc.model.semantics.evaluation import evaluate
@@ -26,7 +27,16 @@ from robosc.run.node_tests.trace_test import describe_incoming
 from robosc.run.runtime.core.event_log import nest
 from robosc.run.runtime.core.json_text import json_text
 from robosc.run.runtime.core.port import CancelAnswer, Failure, GoalOutcome
-from robosc.run.scenario_tests.event_data import agrees, by_index, first_unknown, is_raw, sent_data
+from robosc.run.scenario_tests.event_data import (
+    agrees,
+    by_index,
+    first_unknown,
+    is_raw,
+    plain,
+    sent_data,
+    with_defaults,
+    with_expected_defaults,
+)
 from robosc.run.scenario_tests.reading import (
     Every,
     Expectation,
@@ -45,7 +55,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from robosc.base.diagnostics import Diagnostic
-    from robosc.base.ros_types import RosDistribution
+    from robosc.base.ros_types import RosDistribution, Section
     from robosc.language.configuration import Configuration
     from robosc.model import expression as ex
     from robosc.run.node_tests.robot import RunningGoal
@@ -86,6 +96,11 @@ class _Controller(DrivenController):
     def engine(self) -> Any:
         """The engine of the supervised system."""
         return self._control.engine
+
+    def type_of(self, event: sct.Event) -> tuple[rosgraph.Interface, Section]:
+        """Return the type of the data that a command sends."""
+        sender = self._senders[event]
+        return sender.interface, sender.section
 
     def note(self, operations: Operations) -> None:
         """Record the calls of the control loop from now on."""
@@ -538,8 +553,11 @@ class Player(Drive):
             return line.fault(f"the {phrase} was not sent since the last step", self._state())
         # The log does not show objects that are forwarded unchanged.
         messages = self._controller.messages
-        sent = [sent_data(entry, messages.get(number), line.data) for number, entry in sent_entries]
-        count = sum(line.data is None or agrees(line.data, data) for data in sent)
+        sent = [sent_data(entry, messages.get(number)) for number, entry in sent_entries]
+        whole = [self._whole(event, messages.get(number)) for number, _ in sent_entries]
+        count = sum(
+            line.data is None or any(agrees(line.data, data) for data in both) for both in zip(sent, whole, strict=True)
+        )
         if count == line.count or (count and line.count is None):
             return None
         if line.count is not None and (count or line.data is None):
@@ -550,7 +568,15 @@ class Player(Drive):
         if unknown:
             message = f"`{unknown}` of the {phrase} cannot be compared: the node forwards it unchanged"
             return line.fault(message, "leave it out: times and fields of unknown definitions are not compared")
-        return line.fault(f"the {phrase} was sent with other data", f"the sent data is {json_text(sent[-1])}")
+        shown = with_expected_defaults(sent[-1], whole[-1], line.data)
+        return line.fault(f"the {phrase} was sent with other data", f"the sent data is {json_text(shown)}")
+
+    def _whole(self, event: sct.Event, message: Any) -> Any:
+        """Return all fields of a sent message."""
+        interface, section = self._controller.type_of(event)
+        kind = NestedType(interface.package, interface.type)
+        value = {} if message is None else plain(message)
+        return with_defaults(self._distribution, kind, section, value, self._handed_on(event))
 
     def _handed_on(self, event: sct.Event) -> list[Sequence[str]]:
         """Return the paths in a command at which data is forwarded unchanged."""
