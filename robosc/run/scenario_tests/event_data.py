@@ -128,7 +128,7 @@ def with_expected_defaults(sent: Any, whole: Any, expected: Any) -> Any:
     """Return sent data with the defaults of the expected fields; `whole` has all defaults."""
     if not isinstance(whole, dict) or not isinstance(expected, dict):
         return whole if sent is None else sent
-    fields = sent if isinstance(sent, dict) else {}
+    fields = sent if isinstance(sent, dict) else {} if sent is None else whole
     names = [name for name in expected if name in whole]
     return {
         **fields,
