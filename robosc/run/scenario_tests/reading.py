@@ -222,6 +222,8 @@ class _Reader:
         self.findings: list[Diagnostic] = []
         #: Steps of `before each`; None if the file has no such block so far.
         self._shared: list[Line] | None = None
+        #: Numbers of the scenarios with an expectation, from 1.
+        self._expecting: set[int] = set()
         #: Open blocks: their first lines, their steps, and how often these are played.
         self._blocks: list[tuple[Line, list[Line], int]] = []
 
@@ -246,9 +248,8 @@ class _Reader:
         start_of_file = Line(self._file, Span(1, 1, 1, 1))
         if not self.scenarios:
             self._fault(start_of_file, "the file has no scenario", 'begin with `scenario "…"`')
-        for scenario in self.scenarios:
-            own = scenario.steps[len(self._shared or ()) :]
-            if not any(isinstance(line, Expectation) for line in _all_lines(own)):
+        for number, scenario in enumerate(self.scenarios, 1):
+            if number not in self._expecting:
                 self._fault(scenario.line, "the scenario has no expectation", "write `expect …`")
 
     def _fault(self, line: Line, message: str, hint: str | None = None) -> None:
@@ -321,6 +322,7 @@ class _Reader:
 
     def _step_or_expectation(self, word: str, rest: str, text: str, line: Line) -> Iterator[Line]:
         if word == "expect":
+            self._expecting.add(len(self.scenarios))
             yield from self._expected(rest, line)
         elif word == "wait":
             seconds = _seconds(_WAIT.fullmatch(text))
@@ -339,20 +341,20 @@ class _Reader:
         seconds = _seconds(match)
         if not seconds or seconds < _SECONDS["ms"]:
             self._fault(line, "`every` needs a time from 1 ms to a day", _FORMS["every"])
-        for step in self._step(match["step"], line):
+        for step in self._step(match["step"], line, _FORMS["every"]):
             if not isinstance(step, IncomingEvent):
-                self._fault(line, "`every` repeats an event from the robot", _FORMS["every"])
+                self._fault(line, "a refusal cannot be repeated", _FORMS["every"])
             elif seconds:
                 yield Every(line.file, line.span, seconds, step)
 
-    def _step(self, text: str, line: Line) -> Iterator[Line]:
+    def _step(self, text: str, line: Line, form: str | None = None) -> Iterator[Line]:
         try:
             step = step_in_words(text)
         except StepError as error:
             self._unread(error, text, line)
             return
         if step is None:
-            self._fault(line, "this is neither a step nor an expectation", _form_of(text.split(maxsplit=1)[0]))
+            self._fault(line, "this is neither a step nor an expectation", form or _form_of(text.split(maxsplit=1)[0]))
             if _ALMOST_BLOCK.fullmatch(text):
                 self._blocks.append((line, [], 1))
         elif step.is_refusal:

@@ -145,6 +145,75 @@ def test_what_is_handed_on_is_compared(expected: str, fault: str) -> None:
         assert '"position":{"x":2,"y":0,"z":0}' in answer.output
 
 
+SENDER = """\
+robot Sender {
+  component Mission {
+    outgoing message name with identifier: "/name", type: string
+    incoming message goal with identifier: "/goal", type: geometry_msgs/PoseStamped
+    incoming message echo with identifier: "/echo", type: string
+    incoming message speed with identifier: "/speed", type: double
+    incoming message beep with identifier: "/beep", type: std_msgs/Bool
+    service power with identifier: "/power", request: std_srvs/SetBool, response: std_srvs/SetBool
+
+    behaviour {
+      variable text: string
+
+      initial marked state waiting { on response from name do text := value goto driving }
+      marked state driving {
+        on request to goal
+        on request to echo
+        on request to speed
+        on request to beep
+        on request to power goto switching
+      }
+      state switching {
+        on response from power goto driving
+        on error from power goto driving
+      }
+    }
+  }
+
+  provide goal with { pose: { position: { x: 2.0 } } }
+  provide echo with Mission.text
+  provide speed with 0.5
+  provide power with { data: true }
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("expected", "sent"),
+    [
+        ('goal sent with {"pose": {"position": {"x": 2.0, "y": 0.0}, "orientation": {"w": 1.0}}}', ""),
+        ('goal sent with {"pose": {"orientation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}}}', ""),
+        (
+            'goal sent with {"pose": {"orientation": {"w": 0.0}}}',
+            '{"pose":{"position":{"x":2},"orientation":{"w":1}}}',
+        ),
+        ('echo sent with "hello"', ""),
+        ('echo sent with {"data": "hello"}', ""),
+        ('echo sent with {"data": "hell"}', '{"data":"hello"}'),
+        ("speed sent with 0.5", ""),
+        ('speed sent with {"data": 0.5}', ""),
+        ('speed sent with {"value": 0.5}', '{"data":0.5}'),
+        ("beep sent with false", ""),
+        ('beep sent with {"data": false}', ""),
+        ("beep sent with true", '{"data":false}'),
+        ("power sent with true", ""),
+        ('power sent with {"data": true}', ""),
+        ("power sent with false", "true"),
+        ("goal sent with 2.0", '{"pose":{"position":{"x":2}}}'),
+    ],
+)
+def test_sent_data_has_the_defaults_of_ros_and_a_single_value_is_an_object_with_one_field(
+    expected: str, sent: str
+) -> None:
+    Path("sender.rscd").write_text(SENDER)
+    answer = played("sender.rscd", f'  name with {{"data": "hello"}}\n  expect {expected} within 500 ms\n')
+    assert answer.exit_code == bool(sent), answer.output
+    assert f"the sent data is {sent}" in answer.output or not sent
+
+
 @pytest.mark.parametrize("loop", [[], ["--loop"]])
 def test_simulate(loop: list[str]) -> None:
     def state_after(model: str, *lines: str) -> dict[str, str]:
