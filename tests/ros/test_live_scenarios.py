@@ -93,6 +93,70 @@ def test_a_call_that_fails_and_times(run_ros2: Runner, tmp_path: Path) -> None:
     assert (status, "1 passed in" in said) == (0, True), said
 
 
+LAMP = """\
+robot Lamp {
+  component Door {
+    outgoing message closed with identifier: "/closed", type: boolean
+
+    behaviour {
+      initial marked state unknown { on response from closed if value goto shut }
+      marked state shut {
+        on response from closed if !value goto unknown
+        after 1 s without closed goto unknown
+      }
+    }
+  }
+
+  component Timer {
+    outgoing message start with identifier: "/start", type: none
+    incoming message lamp with identifier: "/lamp", type: double
+
+    behaviour {
+      initial marked state off { on response from start goto waiting }
+      marked state waiting { after 1 s goto lit }
+      marked state lit { on response from start goto waiting }
+    }
+  }
+
+  requirement lamp needs Door.shut and Timer.lit
+  provide lamp with 0.5
+}
+"""
+SHINES = """\
+before each {
+  every 500 ms response from closed with true
+  start
+}
+
+scenario "a time is up at the end of a wait"
+  wait 500 ms
+  wait 500 ms
+  expect Timer.lit
+  start
+  expect lamp not sent
+
+scenario "steps come again and again"
+  repeat 2 {
+    expect lamp sent with {"data": 0.5} within 2 s
+    start
+    wait 1100 ms
+  }
+  wait 300 ms
+  expect lamp sent 3 times with 0.5
+  stop closed
+  expect Door.unknown within 2 s
+  wait 200 ms
+  expect lamp not sent
+"""
+
+
+def test_repeated_steps_and_times(run_ros2: Runner, tmp_path: Path) -> None:
+    model = tmp_path / "lamp.rscd"
+    model.write_text(LAMP, encoding="utf-8")
+    status, said = played(run_ros2, run_ros2.ros.python, tmp_path, SHINES, model=model)
+    assert (status, "2 passed in" in said) == (0, True), said
+
+
 LIFT = """
 robot Shared {
   component Lift {
