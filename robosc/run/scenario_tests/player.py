@@ -18,7 +18,7 @@ from robosc.model.semantics.evaluation import evaluate
 from robosc.model.semantics.failures import possible_reasons
 from robosc.model.semantics.messages import holds_objects
 from robosc.model.semantics.roles import event_name, plant_of
-from robosc.run.node_tests.drive import LATENESS, Drive, DrivenController
+from robosc.run.node_tests.drive import LATENESS, Drive
 from robosc.run.node_tests.messages import leaf_values
 from robosc.run.node_tests.trace_player import Incoming as Reader
 from robosc.run.node_tests.trace_player import Line as TraceLine
@@ -27,6 +27,7 @@ from robosc.run.node_tests.trace_test import describe_incoming
 from robosc.run.runtime.core.event_log import nest
 from robosc.run.runtime.core.json_text import json_text
 from robosc.run.runtime.core.port import CancelAnswer, Failure, GoalOutcome
+from robosc.run.scenario_tests.controller import ScenarioController
 from robosc.run.scenario_tests.event_data import (
     agrees,
     by_index,
@@ -55,11 +56,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from robosc.base.diagnostics import Diagnostic
-    from robosc.base.ros_types import RosDistribution, Section
+    from robosc.base.ros_types import RosDistribution
     from robosc.language.configuration import Configuration
     from robosc.model import expression as ex
     from robosc.run.node_tests.robot import RunningGoal
-    from robosc.run.runtime.core.json_text import Json
     from robosc.run.runtime.core.port import Client
     from robosc.run.scenario_tests.operations import Operations
     from robosc.run.scenario_tests.reading import Scenario
@@ -89,42 +89,6 @@ class _Repetition:
     count: int = 0
 
 
-class _Controller(DrivenController):
-    """Controller with access to its engine, calls and messages."""
-
-    @property
-    def engine(self) -> Any:
-        """The engine of the supervised system."""
-        return self._control.engine
-
-    def type_of(self, event: sct.Event) -> tuple[rosgraph.Interface, Section]:
-        """Return the type of the data that a command sends."""
-        sender = self._senders[event]
-        return sender.interface, sender.section
-
-    def note(self, operations: Operations) -> None:
-        """Record the calls of the control loop from now on."""
-        self._operations = operations
-        operations.attach(self._control)
-
-    def keep_messages(self, lines_so_far: Callable[[], int]) -> None:
-        """Keep the messages sent from now on in `messages`, by the position of their line in the log."""
-        self._lines_so_far = lines_so_far
-        self.messages: dict[int, Any] = {}
-
-    def _act(self, event: sct.Event) -> tuple[str, Mapping[str, Json] | None] | None:
-        acted = super()._act(event)
-        if event in self._senders:
-            self.messages[self._lines_so_far()] = self._senders[event].message
-        return acted
-
-    def _before(self, name: str) -> bool:
-        may_happen = super()._before(name)
-        if not may_happen:
-            self._operations.withheld(name)
-        return may_happen
-
-
 #: Maximum number of periods of one wait, which take about a minute.
 _MOST_PERIODS = 1_000_000
 
@@ -136,7 +100,7 @@ class Player(Drive):
     last scenario played.
     """
 
-    _controller: _Controller
+    _controller: ScenarioController
 
     def __init__(
         self,
@@ -179,7 +143,7 @@ class Player(Drive):
         It stops with a finding at the first step that can't be played. `operations` records the calls of the control
         loop, by line.
         """
-        self._controller = self._begin(_Controller)
+        self._controller = self._begin(ScenarioController)
         self._operations = operations
         self._controller.note(operations)
         self._controller.keep_messages(lambda: len(self._lines.lines))

@@ -9,26 +9,33 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
 from robosc.base.diagnostics import Diagnostic, Severity, Span
-from robosc.model.semantics.steps import EVENT, StepError, data_in_words, event_in_words, step_in_words
+from robosc.model.semantics.steps import (
+    EVENT,
+    TIME,
+    StepError,
+    data_in_words,
+    event_in_words,
+    seconds_in_words,
+    step_in_words,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
 RULE = "scenario"
-_SECONDS = {"ms": 0.001, "s": 1.0, "min": 60.0}
-_TIME = rf"(?P<time>\d+(?:\.\d+)?)\s*(?P<unit>{'|'.join(_SECONDS)})"
 _SCENARIO = re.compile(r'scenario\s+"([^"]+)"')
-_WAIT = re.compile(rf"wait\s+{_TIME}")
-_EVERY = re.compile(rf"every\s+{_TIME}\s+(?P<step>.+)")
+_WAIT = re.compile(rf"wait\s+{TIME}")
+_EVERY = re.compile(rf"every\s+{TIME}\s+(?P<step>.+)")
 _STOP = re.compile(rf"stop\s+{EVENT}")
 #: The beginning of a block, and its first line if that is on the same line.
 _BLOCK = re.compile(r"(?:repeat\s+(?P<rounds>\d{1,9})|(?P<before>before\s+each))\s*\{\s*(?P<rest>.*)")
-_WITHIN = re.compile(rf"(?P<expected>.+?)\s+within\s+{_TIME}")
+_WITHIN = re.compile(rf"(?P<expected>.+?)\s+within\s+{TIME}")
 #: The beginning of an attempt at a block or a time.
 _ALMOST_BLOCK = re.compile(r"(?:repeat|before)\b.*\{")
 _ALMOST_WITHIN = re.compile(r".*\swithin(?:\s+\d\S*(?:\s+\w+)?)?")
 _ALMOST_EXPECTED = re.compile(EVENT + r"\s+(?:allowed|forbidden|(?:not\s+)?sent)\b.*")
-#: A day. Longer waits are mistakes.
+#: A millisecond and a day. Shorter intervals and longer waits are mistakes.
+_SHORTEST = 0.001
 _LONGEST = 86_400
 #: Limits of `repeat`: rounds with those of the blocks around it, and blocks within each other.
 _MOST_ROUNDS = 1_000_000
@@ -339,7 +346,7 @@ class _Reader:
 
     def _every(self, match: re.Match[str], line: Line) -> Iterator[Line]:
         seconds = _seconds(match)
-        if not seconds or seconds < _SECONDS["ms"]:
+        if not seconds or seconds < _SHORTEST:
             self._fault(line, "`every` needs a time from 1 ms to a day", _FORMS["every"])
         for step in self._step(match["step"], line, _FORMS["every"]):
             if not isinstance(step, IncomingEvent):
@@ -417,7 +424,7 @@ class _Reader:
 
 def _seconds(match: re.Match[str] | None) -> float | None:
     """Return the time in a text; None if there is none, or if it is longer than a day."""
-    seconds = float(match["time"]) * _SECONDS[match["unit"]] if match else math.inf
+    seconds = seconds_in_words(match) if match else math.inf
     return seconds if seconds <= _LONGEST else None
 
 
