@@ -10,7 +10,17 @@ from typing import TYPE_CHECKING
 import pytest
 from click.testing import CliRunner, Result
 
+import robosc
+from robosc.base.ros_types import RosTypes
+from robosc.language import configuration as config
+from robosc.run.node_tests.drive import parameters
+from robosc.run.node_tests.samples import all_incoming
+from robosc.run.node_tests.trace_player import Log, read_trace
+from robosc.run.node_tests.trace_player import Player as TracePlayer
+from robosc.run.node_tests.trace_test import player_files
 from robosc.tools.cli import main
+from tests.run.node_tests import in_process_node
+from tests.run.node_tests.test_traces import be_impatient
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -113,6 +123,31 @@ def test_stop_ends_a_repetition_and_a_second_every_replaces_the_first() -> None:
   expect Door.unknown
 """
     assert times_of(CLOSED, text) == [0.16, 0.36, 0.56, 0.56, 1.56, 2.56]
+
+
+def test_a_second_stop_is_a_fault() -> None:
+    text = 'scenario "one"\n  every 1 s motion with false\n  stop motion\n  stop motion\n  expect Door.unknown\n'
+    [(line, _, message, _)] = findings(text)
+    assert (line, message) == (4, "no `every` before this line repeats the response from `Room.motion`")
+
+
+@pytest.mark.slow
+def test_a_node_follows_the_event_logs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A node in this process, played by the trace player of generated packages."""
+    assert played(GOOD, "--traces", "traces").exit_code == 0
+    robot, configuration = robosc.load(MODEL.name), config.Configuration()
+    robosc.synthesize(robosc.to_sct(robot))
+    graph = robosc.to_rosgraph(robot)
+    incoming = all_incoming(graph, RosTypes().distributions[0])
+    files = player_files(graph, configuration, parameters(graph, configuration), incoming)
+    connections = json.loads(files["connections.json"])
+    be_impatient(monkeypatch)
+    traces = sorted(Path("traces").iterdir())
+    assert len(traces) == 3
+    for trace in traces:
+        log = Path(f"{trace.stem}.events.jsonl")
+        node = in_process_node.InProcessNode(connections, graph, configuration, log)
+        TracePlayer(connections, node, Log(str(log))).play(read_trace(str(trace)))
 
 
 def test_a_repetition_goes_on_while_a_step_takes_its_time() -> None:

@@ -190,6 +190,7 @@ robot Sender {
             'goal sent with {"pose": {"orientation": {"w": 0.0}}}',
             '{"pose":{"position":{"x":2},"orientation":{"w":1}}}',
         ),
+        ('goal sent with {"header": {"frame_id": ""}}', '{"pose":{"position":{"x":2}}}'),  # the node sets it
         ('echo sent with "hello"', ""),
         ('echo sent with {"data": "hello"}', ""),
         ('echo sent with {"data": "hell"}', '{"data":"hello"}'),
