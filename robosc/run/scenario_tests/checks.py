@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 from robosc.analysis.explain import NamingError, find_event
 from robosc.analysis.wording import join_with_and, words
+from robosc.base.ros_types import Section
+from robosc.base.ros_types.unknown_fields import unknown_field
 from robosc.engine import Engine
 from robosc.model import sct
 from robosc.model.semantics.failures import brings_data, possible_reasons
@@ -14,7 +16,7 @@ from robosc.run.scenario_tests.reading import Every, IncomingEvent, Permission, 
 from robosc.run.simulation.data import DataError, EventData
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Mapping
 
     from robosc.base.diagnostics import Diagnostic
     from robosc.base.ros_types import RosTypes
@@ -39,17 +41,35 @@ def unknown_events(model: sct.SupervisoryControlModel, scenarios: Iterable[Scena
 def unfit_data(graph: rosgraph.RosGraph, types: RosTypes, scenarios: Iterable[Scenario]) -> Iterable[Diagnostic]:
     """Return a finding for each line whose data does not fit its event. Precondition: all events are known."""
     checked = EventData(Engine(graph.model), graph, types)
-    return dict.fromkeys(finding for scenario in scenarios for finding in _about_data(graph, checked, scenario))
-
-
-def _about_data(graph: rosgraph.RosGraph, checked: EventData, scenario: Scenario) -> Iterator[Diagnostic]:
-    for line in scenario.lines:
+    sent = _sent_types(graph)
+    findings: dict[Diagnostic, None] = {}
+    for line in (line for scenario in scenarios for line in scenario.lines):
         if isinstance(line, IncomingEvent) and line.data is not None:
-            data = {"value": line.data} if line.reason is None else {"value": line.data, "reason": line.reason}
-            try:
-                checked.check(event_name(find_event(graph.model, line.event)), data, is_message=line.is_message)
-            except DataError as error:
-                yield line.fault(str(error), error.hint)
+            findings |= dict.fromkeys(_about_data(graph, checked, line))
+        elif isinstance(line, SentCommand) and line.data is not None:
+            event = find_event(graph.model, line.event)
+            if event not in sent:
+                findings[line.fault(f"the {words(event)} has no data", "leave out `with …`")] = None
+            elif (fault := unknown_field(types.distributions, *sent[event], line.data)) is not None:
+                findings[line.fault(fault[0], f"did you mean `{fault[1]}`?" if fault[1] else None)] = None
+    return findings
+
+
+def _sent_types(graph: rosgraph.RosGraph) -> Mapping[sct.Event, tuple[str, str, Section]]:
+    """Return package, type and section of the data of each command."""
+    publishers = [(publisher.interface, sending) for publisher in graph.publishers for sending in publisher.sendings]
+    sections = [(*pair, Section.MESSAGE) for pair in publishers]
+    sections += [(service.interface, service.request, Section.REQUEST) for service in graph.serviceClients]
+    sections += [(action.interface, action.request, Section.GOAL) for action in graph.actionClients]
+    return {sending.event: (interface.package, interface.type, section) for interface, sending, section in sections}
+
+
+def _about_data(graph: rosgraph.RosGraph, checked: EventData, line: IncomingEvent) -> Iterator[Diagnostic]:
+    data = {"value": line.data} if line.reason is None else {"value": line.data, "reason": line.reason}
+    try:
+        checked.check(event_name(find_event(graph.model, line.event)), data, is_message=line.is_message)
+    except DataError as error:
+        yield line.fault(str(error), error.hint)
 
 
 def _about_events(model: sct.SupervisoryControlModel, scenario: Scenario) -> Iterator[Diagnostic]:

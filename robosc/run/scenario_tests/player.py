@@ -510,24 +510,20 @@ class Player(Drive):
         name, phrase = event_name(event), words(event)
         lines = enumerate(self._lines.lines[self._since :], self._since)
         entries = [(number, json.loads(text)) for number, text in lines if f'"{name}"' in text]
-        sent_entries = [(number, entry) for number, entry in entries if entry["event"] == name]
+        entries = [(number, entry) for number, entry in entries if entry["event"] == name]
         if not line.expected:
-            return line.fault(f"the {phrase} was sent") if sent_entries else None
-        if not sent_entries:
+            return line.fault(f"the {phrase} was sent") if entries else None
+        if not entries:
             return line.fault(f"the {phrase} was not sent since the last step", self._state())
+        if line.data is None:
+            return _counted(line, phrase, len(entries))
         # The log does not show objects that are forwarded unchanged.
         messages = self._controller.messages
-        sent = [sent_data(entry, messages.get(number)) for number, entry in sent_entries]
-        whole = [self._whole(event, messages.get(number)) for number, _ in sent_entries]
-        count = sum(
-            line.data is None or any(agrees(line.data, data) for data in both) for both in zip(sent, whole, strict=True)
-        )
-        if count == line.count or (count and line.count is None):
-            return None
-        if line.count is not None and (count or line.data is None):
-            with_data = "" if line.data is None else " with this data"
-            times = f"{count} time{'s' * (count != 1)}"
-            return line.fault(f"the {phrase} was sent {times}{with_data} since the last step, not {line.count}")
+        sent = [sent_data(entry, messages.get(number)) for number, entry in entries]
+        whole = [self._whole(event, messages.get(number)) for number, _ in entries]
+        count = sum(any(agrees(line.data, data) for data in both) for both in zip(sent, whole, strict=True))
+        if count:
+            return _counted(line, f"{phrase} with this data", count)
         unknown = first_unknown(line.data, sent[-1], self._handed_on(event))
         if unknown:
             message = f"`{unknown}` of the {phrase} cannot be compared: the node forwards it unchanged"
@@ -573,3 +569,11 @@ _WHY = {
     Blocked.REQUIREMENT: "its requirements forbid it",
     Blocked.SYNTHESIS: "synthesis forbids it",
 }
+
+
+def _counted(line: SentCommand, phrase: str, count: int) -> Diagnostic | None:
+    """Return a finding if a command was sent in another number than expected."""
+    if line.count in (None, count):
+        return None
+    times = f"{count} time{'s' * (count != 1)}"
+    return line.fault(f"the {phrase} was sent {times} since the last step, not {line.count}")

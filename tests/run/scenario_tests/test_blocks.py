@@ -223,7 +223,7 @@ def test_time_passes_only_until_an_expectation_is_met() -> None:
         ("lamp sent 1 time", "the request to `Lamp.lamp` was sent 10 times since the last step, not 1"),
         (
             "lamp sent 9 times with 0.5",
-            "the request to `Lamp.lamp` was sent 10 times with this data since the last step, not 9",
+            "the request to `Lamp.lamp` with this data was sent 10 times since the last step, not 9",
         ),
         ("lamp sent 10 times with 0.25", "the request to `Lamp.lamp` was sent with other data"),
         ("drive sent 2 times", "the request to `Base.drive` was not sent since the last step"),
@@ -325,3 +325,22 @@ def test_older_files_keep_their_meaning(folder: Path) -> None:
     (folder / "names.scenarios").write_text(f'scenario "one"\n{lines}  expect go forbidden by stop within 2 s\n')
     answer = CliRunner().invoke(main, ["test", "names.rscd", "names.scenarios"], catch_exceptions=False)
     assert answer.exit_code == 0, answer.output
+
+
+def test_a_cancel_is_sent_without_data(folder: Path) -> None:
+    model = folder / MODEL.name
+    stop = """component Stop {
+    outgoing message pressed with identifier: "/pressed", type: none
+    behaviour {
+      initial marked state released { on response from pressed goto held }
+      marked state held {}
+    }
+  }
+
+  component Base {"""
+    text = model.read_text().replace("component Base {", stop).replace("drive needs", "drive needs Stop.released and")
+    model.write_text(text)
+    steps = 'scenario "one"\n  pressed\n  expect cancel from drive sent\n  expect cancel from drive sent 1 time'
+    assert findings(f"{steps}\n") == []
+    [(line, _, message, hint)] = findings(f"{steps} with 1\n")
+    assert (line, message, hint) == (4, "the cancel of `Base.drive` has no data", "leave out `with …`")
