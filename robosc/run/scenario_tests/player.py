@@ -241,8 +241,8 @@ class Player(Drive):
         periods = math.ceil(round(seconds / self._period, 6))
         ticks = periods * math.prod(one.of for one in self._rounds)
         if ticks > _MOST_PERIODS:
-            hint = "wait for less, or play with a longer `controlLoop.periodMs`"
-            raise NamingError(f"the wait has {ticks:,} ticks of the control loop, at most a million", hint)
+            hint = "write a shorter time, or play with a longer `controlLoop.periodMs`"
+            raise NamingError(f"this time has {ticks:,} ticks of the control loop, at most a million", hint)
         over, expiries = self._now + seconds, self._expiries - 1
         for _ in range(periods):
             self._pass_period()

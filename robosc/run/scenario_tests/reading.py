@@ -256,7 +256,7 @@ class _Reader:
         if not self.scenarios:
             self._fault(start_of_file, "the file has no scenario", 'begin with `scenario "…"`')
         for number, scenario in enumerate(self.scenarios, 1):
-            if number not in self._expecting:
+            if scenario.name and number not in self._expecting:
                 self._fault(scenario.line, "the scenario has no expectation", "write `expect …`")
 
     def _fault(self, line: Line, message: str, hint: str | None = None) -> None:

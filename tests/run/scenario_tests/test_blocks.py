@@ -288,7 +288,7 @@ def test_deep_blocks_are_refused() -> None:
 def test_a_block_with_too_many_ticks_is_refused_at_once() -> None:
     text = 'scenario "one"\n  repeat 1000 {\n    wait 1 h\n  }\n  expect Door.unknown\n'.replace("1 h", "60 min")
     [(line, _, message, _)] = findings(text)
-    assert (line, message) == (3, "the wait has 36,000,000 ticks of the control loop, at most a million")
+    assert (line, message) == (3, "this time has 36,000,000 ticks of the control loop, at most a million")
 
 
 NAMES = """\

@@ -249,7 +249,7 @@ def test_a_tab_separates_words() -> None:
 def test_a_wait_has_a_limit(folder: Path) -> None:
     (folder / "fast.json").write_text('{"controlLoop": {"periodMs": 1}}')
     text = 'scenario "one"\n  wait 60 min\n  expect lamp sent\n'
-    limit = "the wait has 3,600,000 ticks of the control loop, at most a million"
+    limit = "this time has 3,600,000 ticks of the control loop, at most a million"
     assert findings(text, "--config", "fast.json") == [(2, 3, limit)]
 
 
