@@ -12,6 +12,7 @@ from robosc.base.interruption import checkpoint
 from robosc.base.ros_types.wire import FOLDERS
 from robosc.language.failures import expects_failure
 from robosc.language.interface_types import declare, is_made, link_interface, ros_properties, ros_property
+from robosc.language.ros_constants import constants_of, literal, used_types
 from robosc.language.scopes import File, NameKind, Names, Scope, by_name
 from robosc.language.spellings import NEGATION, folder
 from robosc.language.syntax_messages import BASIC_TYPES, CONSTRUCTS, did_you_mean
@@ -56,6 +57,7 @@ _FUNCTION = (
 )
 _OWN_TEXT = "write its content directly"
 _IMPORT = "import it: "
+_OWN_CONSTANT = "declare a `constant` with the value"
 #: Minimum length of a name for the import hint: shorter names are parts of too many others.
 _SHORTEST = 4
 OWN_MEMBERS = "a component of a library reads only its own members"
@@ -315,13 +317,17 @@ class Linker:
 
     def _negate(self, call: Any) -> None:
         """Replace `not (x)` by the negation of `x`: no text declares a function of that name."""
-        negation = ex.Negation(operand=call.arguments[0], source=call.source)
-        around, feature = call.eContainer(), call.eContainmentFeature()
+        self._substitute(call, ex.Negation(operand=call.arguments[0], source=call.source))
+
+    def _substitute(self, element: Any, instead: ex.Expression) -> None:
+        """Replace an expression of the model by another one."""
+        around, feature = element.eContainer(), element.eContainmentFeature()
         values = getattr(around, feature.name)
         if feature.many:
-            values[values.index(call)] = negation
+            values[values.index(element)] = instead
         else:
-            setattr(around, feature.name, negation)
+            setattr(around, feature.name, instead)
+        self._file.references.pop(element)
 
     def _quantified_template(self, quantifier: rsc.InstanceQuantifier, name: Name) -> None:
         own = self._file.declared[rsc.Component]
@@ -509,7 +515,9 @@ class Linker:
         elif qualifies and first.text in (automata := self.automata(access)):
             self._requirement_state(access, automata[first.text], names["item"])
             return
-        elif qualifies and self._value_of(access, first, names["item"]):
+        elif qualifies and (
+            self._value_of(access, first, names["item"]) or self._ros_constant(access, first, names["item"])
+        ):
             return
         elif self.around(access, rsc.EnumDataType) is not None:
             self._in_enum(access, first)
@@ -562,6 +570,35 @@ class Linker:
         elif not self._file.may_declare_within(definition, value.text, NameKind.ENUM_VALUE):
             self._missing(value, f"enum `{definition.name}` has no value", values)
         return True
+
+    def _ros_constant(self, access: rsc.Access, type_name: Name, name: Name) -> bool:
+        """Replace `Type.NAME` by the value of a constant of a ROS type; return whether the text uses such a type.
+
+        Names of the text take precedence.
+        """
+        types = used_types(self._file, type_name.text)
+        if access.segments or not types or self._is_declared(access, type_name.text):
+            return False
+        known = constants_of(types, type_name.text, self.interfaces)
+        by_package = known.get(name.text, {})
+        values = {value for values in by_package.values() for value in values}
+        if len(by_package) > 1:
+            types_having = enumeration(f"`{package}/{type_name.text}`" for package in by_package)
+            self._report(name, f"`{name.text}` is a constant of {types_having}", _OWN_CONSTANT)
+        elif not values:
+            self._missing(name, f"the ROS type `{type_name.text}` has no constant", known)
+        elif len(values) > 1:
+            message = f"`{name.text}` has other values in ROS 1 and in ROS 2"
+            self._report(name, message, _OWN_CONSTANT, rule="interface-type")
+        else:
+            self._substitute(access, literal(values.pop(), access.source))
+        return True
+
+    def _is_declared(self, access: rsc.Access, name: str) -> bool:
+        """Return whether a bare name has an element, other than a component or an object."""
+        own = self.around(access, rsc.Component)
+        members = (self.scope.members(own) if own is not None else None) or {}
+        return name in members or bool(self.scope.find(rsc.NamedExpression, name) or self.scope.values(name))
 
     def parameters(self, element: ex.Located) -> Names:
         """Return the parameters that an expression can read: of its function, and of its enum or template."""

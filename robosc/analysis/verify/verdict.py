@@ -7,11 +7,10 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, ParamSpec
-from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from robosc.analysis.paths import TraceStep, trace_data
 from robosc.analysis.wording import in_words
-from robosc.base.diagnostics.visible import visible, visible_lines
+from robosc.base.diagnostics import as_junit as as_junit_xml
 from robosc.model.semantics.roles import event_name
 
 if TYPE_CHECKING:
@@ -102,56 +101,35 @@ def _verdict(verdict: Verdict) -> dict[str, Any]:
 
 
 def as_junit(model: sct.SupervisoryControlModel, verdicts: Sequence[Verdict], file: str) -> str:
-    """Return JUnit XML, the test results that continuous integration reads; a property is a test case.
+    """Return JUnit XML; a property of the model in a file is a test case.
 
-    The model is in `file`. A refuted property is a failure with its trace as the text. The attributes and elements are
-    those that Jenkins, GitLab and GitHub's test reporters share (https://github.com/testmoapp/junitxml). The properties
-    of a test case that verifies a requirement are those that Eclipse S-CORE uses for links.
+    A refuted property is a failure with its trace as the text. The properties of a test case that verifies a
+    requirement are those that Eclipse S-CORE uses for links.
     """
-    numbers = {
-        "tests": str(len(verdicts)),
-        "failures": str(_count(verdicts, Outcome.REFUTED)),
-        "errors": "0",
-        "skipped": str(_count(verdicts, Outcome.SKIPPED)),
-        "time": _seconds(sum(verdict.seconds for verdict in verdicts)),
-    }
-    root = Element("testsuites", {"name": "robosc verify", **numbers})
-    suite = SubElement(root, "testsuite", {"name": model.name, **numbers})
-    for verdict in verdicts:
-        case = SubElement(
-            suite,
-            "testcase",
-            {
-                "name": verdict.property,
-                "classname": model.name,
-                "file": visible(file),
-                "time": _seconds(verdict.seconds),
-            },
-        )
-        if verdict.requirement:
-            properties = SubElement(case, "properties")
-            alone = sum(other.requirement == verdict.requirement for other in verdicts) == 1
-            verifies = "FullyVerifies" if alone else "PartiallyVerifies"
-            for key, value in ((verifies, verdict.requirement), *_HOW):
-                SubElement(properties, "property", {"name": key, "value": visible(value)})
-        if verdict.outcome is Outcome.REFUTED:
-            failure = SubElement(
-                case, "failure", {"message": visible(verdict.explanation), "type": verdict.outcome.value}
-            )
-            failure.text = visible_lines(details(verdict, model))
-        elif verdict.outcome is Outcome.SKIPPED:
-            SubElement(case, "skipped", {"message": visible(verdict.explanation)})
-        SubElement(case, "system-out").text = visible(verdict.evidence)
-    indent(root)
-    return '<?xml version="1.0" encoding="UTF-8"?>\n' + tostring(root, encoding="unicode") + "\n"
+    return as_junit_xml.render("robosc verify", [_test_case(model, verdict, verdicts, file) for verdict in verdicts])
+
+
+def _test_case(
+    model: sct.SupervisoryControlModel, verdict: Verdict, verdicts: Sequence[Verdict], file: str
+) -> as_junit_xml.TestCase:
+    alone = sum(other.requirement == verdict.requirement for other in verdicts) == 1
+    verifies = "FullyVerifies" if alone else "PartiallyVerifies"
+    refuted, skipped = (verdict.outcome is outcome for outcome in (Outcome.REFUTED, Outcome.SKIPPED))
+    failure = as_junit_xml.Failure(verdict.explanation, verdict.outcome.value, details(verdict, model))
+    return as_junit_xml.TestCase(
+        model.name,
+        verdict.property,
+        file,
+        verdict.seconds,
+        failure=failure if refuted else None,
+        skipped=verdict.explanation if skipped else None,
+        output=verdict.evidence,
+        properties=((verifies, verdict.requirement), *_HOW) if verdict.requirement else (),
+    )
 
 
 def _count(verdicts: Sequence[Verdict], outcome: Outcome) -> int:
     return sum(verdict.outcome is outcome for verdict in verdicts)
-
-
-def _seconds(seconds: float) -> str:
-    return f"{seconds:.3f}"
 
 
 def details(verdict: Verdict, model: sct.SupervisoryControlModel) -> str:

@@ -136,6 +136,39 @@ def rules() -> Iterator[HighlightRule]:
         yield HighlightRule(rf"{_any(words)}\b(?=\s*$|\s+{no_operand}[\w^({{!\-\"'\[]|\()", (kind,))
     for kind, words in RESERVED.items():
         yield HighlightRule(rf"{_any(words)}\b", (kind,))
+    yield from _other_text()
+
+
+def scenario_rules() -> Iterator[HighlightRule]:
+    """Yield the rules for scenarios, in the same order of precedence."""
+    begin, blank, name = r"(^\s*|\{\s*)", r"(\s+)", r"[\w^]"
+    yield HighlightRule(r"//[^\n]*", (Kind.COMMENT,))
+    yield HighlightRule(r'"(?:[^"\\\n]|\\.)*"?', (Kind.STRING,))
+    yield HighlightRule(rf'{begin}(scenario)(?=\s+")', (Kind.BLANK, Kind.DECLARATION))
+    both = (Kind.BLANK, Kind.CONTROL, Kind.BLANK, Kind.CONTROL)
+    yield HighlightRule(rf"{begin}(before){blank}(each)(?=\s*\{{)", both)
+    yield HighlightRule(rf"{begin}(refuse){blank}(cancel)(?=\s+of\b)", both)
+    yield HighlightRule(rf"{begin}(every|repeat|wait)(?=\s+[0-9])", (Kind.BLANK, Kind.CONTROL))
+    yield HighlightRule(rf"{begin}(stop)(?=\s+(?!with\b|because\b){name})", (Kind.BLANK, Kind.CONTROL))
+    yield HighlightRule(rf"{begin}(expect)(?=\s)", (Kind.BLANK, Kind.CONTROL))
+    time = rf"(?<![\w.])([0-9]+(?:\.[0-9]+)?)(\s*)({'|'.join(UNITS)})\b"
+    yield HighlightRule(time, (Kind.FLOAT, Kind.BLANK, Kind.UNIT))
+    yield HighlightRule(r"(?<![0-9])[0-9]+\.[0-9]+\b", (Kind.FLOAT,))
+    yield HighlightRule(r"[0-9]+\b", (Kind.INTEGER,))
+    kinds = ("request", "response", "error", "feedback", "canceled", "cancel")
+    yield HighlightRule(rf"{_any(kinds)}{blank}(from|to)\b", (Kind.CONTROL, Kind.BLANK, Kind.CONTROL))
+    behind = ("allowed", "because", "by", "forbidden", "of", "sent", "time", "times", "violated", "with", "within")
+    yield HighlightRule(rf"(?<=\s)({'|'.join(behind)})(?=\s|$)", (Kind.CONTROL,))
+    yield HighlightRule(r"(?<=\s)(not)(?=\s+sent\b)", (Kind.CONTROL,))
+    yield HighlightRule(r"(?<=\s)(message)(?=\s*\{)", (Kind.CONTROL,))
+    yield HighlightRule(r"(\.)(\s*)([\w^]+)", (Kind.PUNCTUATION, Kind.BLANK, Kind.NAME))
+    yield HighlightRule(rf"{_any(RESERVED[Kind.CONSTANT])}\b", (Kind.CONSTANT,))
+    yield HighlightRule(rf"{_any(RESERVED[Kind.WORD_OPERATOR])}\b", (Kind.WORD_OPERATOR,))
+    yield from _other_text()
+
+
+def _other_text() -> Iterator[HighlightRule]:
+    """Yield the rules for names, operators and blanks, which come last."""
     yield HighlightRule(_NAME, (Kind.NAME,))
     yield HighlightRule(r":=|->|=>|!=|<=|>=|[-+*/=<>!]", (Kind.OPERATOR,))
     yield HighlightRule(r"[{}()\[\],:.]", (Kind.PUNCTUATION,))

@@ -3,22 +3,33 @@
 from __future__ import annotations
 
 import json
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from robosc.language.highlighting.rules import BLOCK_COMMENT, HighlightRule, Kind, rules
+from robosc.language.highlighting.rules import BLOCK_COMMENT, HighlightRule, Kind, rules, scenario_rules
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
 
 
 def grammar() -> str:
     """Return the text of `robosc.tmLanguage.json`."""
     begin, end = BLOCK_COMMENT
     block = {"name": "comment.block.robosc", "begin": begin, "end": end}
-    document = {
-        "name": "RoboSC",
-        "scopeName": "source.robosc",
-        "fileTypes": ["rscd"],
-        "patterns": [block, *(_pattern(rule) for rule in rules() if rule.kinds != (Kind.BLANK,))],
-    }
+    return _document("RoboSC", "source.robosc", "rscd", [block, *_patterns(rules())])
+
+
+def scenarios_grammar() -> str:
+    """Return the text of `robosc-scenarios.tmLanguage.json`."""
+    return _document("RoboSC Scenarios", "source.robosc-scenarios", "scenarios", _patterns(scenario_rules()))
+
+
+def _document(name: str, scope: str, suffix: str, patterns: list[dict[str, Any]]) -> str:
+    document = {"name": name, "scopeName": scope, "fileTypes": [suffix], "patterns": patterns}
     return json.dumps(document, indent=2) + "\n"
+
+
+def _patterns(several: Iterable[HighlightRule]) -> list[dict[str, Any]]:
+    return [_pattern(rule) for rule in several if rule.kinds != (Kind.BLANK,)]
 
 
 def _pattern(rule: HighlightRule) -> dict[str, Any]:

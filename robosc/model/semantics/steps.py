@@ -15,6 +15,9 @@ _KIND = rf"(?P<kind>{'|'.join(_KINDS)})"
 _NAME = r"(?P<name>\^?[A-Za-z_]\w*(?:\.\^?\w+)*)"
 #: An event in words, such as `response from scan`. A bare name stands for the usual event of its communication.
 EVENT = rf"(?:{_KIND}\s+(?:to|from)\s+)?{_NAME}"
+#: A time in words, such as `500 ms`, and the seconds of each unit.
+_SECONDS = {"ms": 0.001, "s": 1.0, "min": 60.0}
+TIME = rf"(?P<time>\d+(?:\.\d+)?)\s*(?P<unit>{'|'.join(_SECONDS)})"
 _STEP = re.compile(EVENT + r"(?:\s+because\s+(?P<reason>\w+))?(?:\s+with\s+(?P<message>message\s+)?(?P<data>.+))?")
 _REFUSAL = re.compile(rf"refuse\s+cancel\s+of\s+{_NAME}")
 _LITERAL = re.compile(r"(?!true$|false$|null$)[A-Za-z_]\w*")
@@ -66,6 +69,11 @@ def step_in_words(text: str) -> StepInWords | None:
 def event_in_words(match: re.Match[str]) -> str:
     """Return the event of a match of EVENT, in the syntax of `explain`."""
     return f"{_plain(match)}.{match['kind']}" if match["kind"] else _plain(match)
+
+
+def seconds_in_words(match: re.Match[str]) -> float:
+    """Return the seconds of a match of TIME."""
+    return float(match["time"]) * _SECONDS[match["unit"]]
 
 
 def data_in_words(text: str, position: int) -> Any:

@@ -14,6 +14,7 @@ from robosc.run.runtime.core.event_log import EventLog
 from robosc.run.runtime.core.event_loop import EventLoop
 from robosc.run.runtime.core.json_text import json_text
 from robosc.run.runtime.core.settings import Settings
+from robosc.run.runtime.core.times import RESOLUTION_MS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -32,6 +33,8 @@ _Controller = TypeVar("_Controller", bound="DrivenController")
 _DAY = 24 * 3600 * 1000
 #: Milliseconds after its time at which a timer has certainly expired.
 _MARGIN = 1.01
+#: Seconds by which a timer expires late at most: the clock is read in whole milliseconds.
+LATENESS = (RESOLUTION_MS + _MARGIN + 0.01) / 1000
 
 
 def parameters(graph: rosgraph.RosGraph, configuration: Configuration) -> dict[str, bool | int]:
@@ -117,6 +120,7 @@ class Drive:
         """Create the controller of a new run, without starting it."""
         self._pace = Pace(self._period)
         self._now = START * self._period
+        self._expiries = 0
         settings = Settings(_defaults(self._graph, self._configuration) | self.parameters, self._configuration)
         self._robot = Robot(self._graph, self._distribution, lambda: self._now, self.incoming)
         self._event_loop = EventLoop(lambda: self._now)
@@ -144,12 +148,29 @@ class Drive:
             up = self._controller.up
             stop = self._pace.next if up is None else self._pace.before((up + _MARGIN) / 1000)
             if stop is None:
-                assert up is not None
-                self._now = (up + _MARGIN) / 1000
+                self._expire()
             else:
                 self._now = stop
                 over = self._pace.advance()
-            self._work()
+                self._work()
+
+    def _expire(self) -> None:
+        """Let time pass until the next timer has expired."""
+        assert self._controller.up is not None
+        self._now = (self._controller.up + _MARGIN) / 1000
+        self._expiries += 1
+        self._work()
+
+    def _pass_expiry(self, seconds: float) -> bool:
+        """Let the next timer expire if it has expired by a time, with a tick that is due before; return whether so."""
+        up = self._controller.up
+        if up is None or (up + _MARGIN) / 1000 > seconds:
+            return False
+        if self._pace.before((up + _MARGIN) / 1000) is None:
+            self._expire()
+        else:
+            self._pass_period()
+        return True
 
     def _work(self) -> None:
         while self._event_loop.run_pending() == 0:

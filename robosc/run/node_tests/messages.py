@@ -182,15 +182,16 @@ def new_object(
     reached = distribution.type_at(interface.package, interface.type, section, path)
     if reached is None or not isinstance(reached[0], NestedType):
         return BLANK
-    return _new(*reached, distribution)
+    return new_value(*reached, distribution)
 
 
-def _new(kind: WireType, section: Section, distribution: RosDistribution) -> Any:
+def new_value(kind: WireType, section: Section, distribution: RosDistribution) -> Any:
+    """Return new data of a type; if the definition of an object is unknown, all its fields are zero."""
     match kind:
         case Basic():
             return kind.initial
         case Sequence():
-            elements = kind.default or (_new(kind.element, section, distribution),) * kind.initial_length
+            elements = kind.default or (new_value(kind.element, section, distribution),) * kind.initial_length
             return list(elements)
     try:
         fields = distribution.fields(kind.package, kind.name, section)
@@ -198,7 +199,7 @@ def _new(kind: WireType, section: Section, distribution: RosDistribution) -> Any
         fields = None
     if fields is None:
         return BLANK
-    values = {name: _new(field, Section.MESSAGE, distribution) for name, field in fields.items()}
+    values = {name: new_value(field, Section.MESSAGE, distribution) for name, field in fields.items()}
     if str(kind) == "geometry_msgs/Quaternion":
         values["w"] = 1.0  # nodes set it in ROS 1, too
     return Record(**values, wire_types={name: str(field) for name, field in fields.items()})

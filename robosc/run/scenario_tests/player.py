@@ -4,135 +4,94 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import replace
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robosc.analysis.explain import NamingError, find_event
-from robosc.analysis.wording import join_with_and, name, quote_requirements, words
-from robosc.engine import Blocked, Engine
+from robosc.analysis.wording import name, quote_requirements, words
+from robosc.base.ros_types.wire import NestedType
+from robosc.engine import Blocked
 from robosc.model import rosgraph, sct
 from robosc.model.semantics.evaluation import evaluate
-from robosc.model.semantics.failures import brings_data, possible_reasons
+from robosc.model.semantics.failures import possible_reasons
 from robosc.model.semantics.messages import holds_objects
 from robosc.model.semantics.roles import event_name, plant_of
-from robosc.run.node_tests.drive import Drive, DrivenController
-from robosc.run.node_tests.messages import Record, leaf_values
+from robosc.run.node_tests.drive import LATENESS, Drive
+from robosc.run.node_tests.messages import leaf_values
 from robosc.run.node_tests.trace_player import Incoming as Reader
 from robosc.run.node_tests.trace_player import Line as TraceLine
-from robosc.run.node_tests.trace_player import TraceError, merged, same, with_nan
+from robosc.run.node_tests.trace_player import TraceError, merged, with_nan
 from robosc.run.node_tests.trace_test import describe_incoming
 from robosc.run.runtime.core.event_log import nest
 from robosc.run.runtime.core.json_text import json_text
 from robosc.run.runtime.core.port import CancelAnswer, Failure, GoalOutcome
-from robosc.run.scenario_tests.reading import Holds, IncomingEvent, Permission, Refusal, SentCommand, Violation, Wait
-from robosc.run.simulation.data import DataError, EventData
+from robosc.run.scenario_tests.controller import ScenarioController
+from robosc.run.scenario_tests.event_data import (
+    agrees,
+    by_index,
+    first_unknown,
+    is_raw,
+    plain,
+    sent_data,
+    with_defaults,
+    with_expected_defaults,
+)
+from robosc.run.scenario_tests.reading import (
+    Every,
+    Expectation,
+    Holds,
+    IncomingEvent,
+    Line,
+    Permission,
+    Refusal,
+    Repeat,
+    SentCommand,
+    Stop,
+    Violation,
+    Wait,
+)
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from robosc.base.diagnostics import Diagnostic
-    from robosc.base.ros_types import RosDistribution, RosTypes
+    from robosc.base.ros_types import RosDistribution
     from robosc.language.configuration import Configuration
     from robosc.model import expression as ex
     from robosc.run.node_tests.robot import RunningGoal
-    from robosc.run.node_tests.samples import LoggedValue
-    from robosc.run.runtime.core.json_text import Json
     from robosc.run.runtime.core.port import Client
     from robosc.run.scenario_tests.operations import Operations
-    from robosc.run.scenario_tests.reading import Line, Scenario
+    from robosc.run.scenario_tests.reading import Scenario
 
 
-class _Controller(DrivenController):
-    """Controller with access to its engine, calls and messages."""
+class _StepError(Exception):
+    """Error of a step that cannot be played, with its finding."""
 
-    @property
-    def engine(self) -> Any:
-        """The engine of the supervised system."""
-        return self._control.engine
+    def __init__(self, finding: Diagnostic) -> None:
+        super().__init__(finding.message)
+        self.finding = finding
 
-    def note(self, operations: Operations) -> None:
-        """Record the calls of the control loop from now on."""
-        self._operations = operations
-        operations.attach(self._control)
 
-    def keep_messages(self, lines_so_far: Callable[[], int]) -> None:
-        """Keep the messages sent from now on in `messages`, by the position of their line in the log."""
-        self._lines_so_far = lines_so_far
-        self.messages: dict[int, Any] = {}
+class _Round(NamedTuple):
+    """Round of a block."""
 
-    def _act(self, event: sct.Event) -> tuple[str, Mapping[str, Json] | None] | None:
-        acted = super()._act(event)
-        if event in self._senders:
-            self.messages[self._lines_so_far()] = self._senders[event].message
-        return acted
+    number: int
+    of: int
 
-    @property
-    def violations(self) -> list[str]:
-        """The names of the violated assumptions, once for each violation."""
-        return self._violations.names
 
-    def _before(self, name: str) -> bool:
-        may_happen = super()._before(name)
-        if not may_happen:
-            self._operations.withheld(name)
-        return may_happen
+@dataclass
+class _Repetition:
+    """Step of `every` that is being repeated: periods that have passed since its start, and repetitions in them."""
+
+    line: Every
+    periods: int = 0
+    count: int = 0
 
 
 #: Maximum number of periods of one wait, which take about a minute.
 _MOST_PERIODS = 1_000_000
-#: Kinds of events that a step may name.
-_FROM_THE_ROBOT = (sct.EventKind.response, sct.EventKind.error, sct.EventKind.feedback, sct.EventKind.canceled)
-
-
-def unknown_events(model: sct.SupervisoryControlModel, scenarios: Iterable[Scenario]) -> Iterator[Diagnostic]:
-    """Yield a finding for each line that names an event which the model does not have.
-
-    Also for each line with an event that the robot does not send.
-    """
-    assumptions = [plant.origin for plant in model.plants if plant.kind == sct.PlantKind.assumption and plant.origin]
-    for line in (line for scenario in scenarios for line in scenario.steps):
-        if isinstance(line, Violation) and line.assumption not in assumptions:
-            hint = f"expected {join_with_and(assumptions)}" if assumptions else "give the assumption a name"
-            yield line.fault(f"the robot has no assumption `{line.assumption}`", hint)
-        if not isinstance(line, (IncomingEvent, Refusal, Permission, SentCommand)):
-            continue
-        try:
-            event = find_event(model, line.event)
-        except NamingError as error:
-            yield line.fault(error.message, error.hint or None)
-            continue
-        if isinstance(line, IncomingEvent):
-            yield from _impossible(line, event)
-        elif isinstance(line, SentCommand) and not event.controllable:
-            yield line.fault(f"the {words(event)} comes from the robot, not from the controller")
-
-
-def unfit_data(graph: rosgraph.RosGraph, types: RosTypes, scenarios: Iterable[Scenario]) -> Iterator[Diagnostic]:
-    """Yield a finding for each line whose data does not fit its event. Precondition: each event and reason is known."""
-    checked = EventData(Engine(graph.model), graph, types)
-    for line in (line for scenario in scenarios for line in scenario.steps):
-        if isinstance(line, IncomingEvent) and line.data is not None:
-            data = {"value": line.data} if line.reason is None else {"value": line.data, "reason": line.reason}
-            try:
-                checked.check(event_name(find_event(graph.model, line.event)), data, is_message=line.is_message)
-            except DataError as error:
-                yield line.fault(str(error), error.hint)
-
-
-def _impossible(line: IncomingEvent, event: sct.Event) -> Iterator[Diagnostic]:
-    """Yield findings if the robot does not send an event, or not with the line's reason or data."""
-    possible = possible_reasons(event)
-    if event.kind not in _FROM_THE_ROBOT:
-        hint = "a step is a message, an answer or an error; time passes with `wait`"
-        yield line.fault(f"the {words(event)} does not come from the robot", hint)
-    elif line.reason is not None and not possible:
-        yield line.fault("only the error of a service or an action has a reason", f"leave out `because {line.reason}`")
-    elif line.reason is not None and line.reason not in possible:
-        hint = f"expected {join_with_and([f'`{reason}`' for reason in sorted(possible)])}"
-        yield line.fault(f"the {words(event)} cannot have the reason `{line.reason}`", hint)
-    elif possible and line.data is not None and not brings_data(event, line.reason):
-        yield line.fault(f"an error with the reason `{line.reason}` has no data", "leave out `with …`")
 
 
 class Player(Drive):
@@ -142,7 +101,7 @@ class Player(Drive):
     last scenario played.
     """
 
-    _controller: _Controller
+    _controller: ScenarioController
 
     def __init__(
         self,
@@ -185,69 +144,124 @@ class Player(Drive):
         It stops with a finding at the first step that can't be played. `operations` records the calls of the control
         loop, by line.
         """
-        self._controller = self._begin(_Controller)
+        self._controller = self._begin(ScenarioController)
+        self._operations = operations
         self._controller.note(operations)
         self._controller.keep_messages(lambda: len(self._lines.lines))
         self._controller.start()
-        findings: list[Diagnostic] = []
+        #: The first finding of each line of the scenario.
+        self._findings: dict[Line, Diagnostic] = {}
+        self._scenario = scenario
         self._since = self._violations_before = 0
         self._sources = []
+        self._rounds: list[_Round] = []
+        self._repetitions: dict[sct.Event, _Repetition] = {}
         try:
-            self._pass_period()
-            self._attribute(scenario.line)
-            for line in scenario.steps:
-                operations.line = line
-                fault = self._played(line)
-                self._attribute(line)
-                if fault is not None:
-                    if isinstance(line, (IncomingEvent, Refusal, Wait)):
-                        findings.append(fault)
-                        break
-                    findings.append(self._with_canceling(fault))
+            with self._causing(scenario.line):
+                self._pass_period()
+            self._play(scenario.steps)
+        except _StepError as error:
+            self._add(error.finding)
         finally:
             self._controller.close()
-        return findings
+        return list(self._findings.values())
 
-    def _attribute(self, line: Line) -> None:
-        self._sources += [line] * (len(self._lines.lines) - len(self._sources))
-
-    def _played(self, line: Line) -> Diagnostic | None:
+    @contextmanager
+    def _causing(self, line: Line) -> Iterator[None]:
+        """Attribute all that happens in a `with` block to a line, and its errors. Raises _StepError."""
+        before = self._operations.line
+        self._attribute()
+        self._operations.line = line
         try:
-            match line:
-                case Wait() | IncomingEvent() | Refusal():
+            yield
+        except NamingError as error:
+            raise _StepError(line.fault(error.message, error.hint or None)) from error
+        except TraceError as error:
+            raise _StepError(line.fault(str(error).partition(": ")[2] or str(error))) from error
+        finally:
+            self._attribute()
+            self._operations.line = before
+
+    def _attribute(self) -> None:
+        self._sources += [self._operations.line] * (len(self._lines.lines) - len(self._sources))
+
+    def _add(self, finding: Diagnostic) -> None:
+        """Add the finding of a line, with its round and scenario if the place does not show them."""
+        rounds = [f"in round {one.number} of {one.of}" for one in self._rounds]
+        is_shared = finding.span.line < self._scenario.line.span.line
+        scenario = [f'in the scenario "{self._scenario.name}"'] if is_shared else []
+        hint = "; ".join([*filter(None, [finding.hint]), *rounds, *scenario])
+        self._findings.setdefault(Line(finding.file, finding.span), replace(finding, hint=hint or None))
+
+    def _play(self, steps: Sequence[Line]) -> None:
+        """Play lines; stop with _StepError at the first step that cannot be played."""
+        for line in steps:
+            if isinstance(line, Repeat):
+                self._play_rounds(line)
+                continue
+            with self._causing(line):
+                if isinstance(line, Expectation):
+                    fault = self._expectation(line)
+                    if fault is not None:
+                        self._add(self._with_canceling(fault))
+                else:
                     self._since = len(self._lines.lines)
                     self._violations_before = len(self._controller.violations)
                     self._step(line)
-                case Holds(text=text):
-                    if not evaluate(self._conditions[line], self._controller.engine.read):
-                        return line.fault(f"`{text}` does not hold", self._state())
-                case Permission():
-                    return self._verdict(line, find_event(self._graph.model, line.event))
-                case Violation(assumption=assumption):
-                    if assumption not in self._controller.violations[self._violations_before :]:
-                        return line.fault(f"the last step does not violate `{assumption}`", self._state())
-                case SentCommand():
-                    return self._sent(line, find_event(self._graph.model, line.event))
-        except NamingError as error:
-            return line.fault(error.message, error.hint or None)
-        except TraceError as error:
-            return line.fault(str(error).partition(": ")[2] or str(error))
-        return None
+
+    def _play_rounds(self, block: Repeat) -> None:
+        since, violations_before = len(self._lines.lines), len(self._controller.violations)
+        for number in range(1, block.rounds + 1):
+            self._rounds.append(_Round(number, block.rounds))
+            self._play(block.steps)
+            self._rounds.pop()
+        # For the expectations that follow, the block is one step.
+        self._since, self._violations_before = since, violations_before
 
     # Steps
 
-    def _step(self, line: Wait | IncomingEvent | Refusal) -> None:
-        if isinstance(line, IncomingEvent):
-            self._come_in(line)
-        elif isinstance(line, Refusal):
-            self._refuse(find_event(self._graph.model, line.event))
-        else:
-            periods = math.ceil(round(line.seconds / self._period, 6))
-            if periods > _MOST_PERIODS:
-                hint = "wait for less, or play with a longer `controlLoop.periodMs`"
-                raise NamingError(f"the wait has {periods:,} ticks of the control loop, at most a million", hint)
-            for _ in range(periods):
-                self._pass_period()
+    def _step(self, line: Line) -> None:
+        match line:
+            case IncomingEvent():
+                self._come_in(line)
+            case Refusal():
+                self._refuse(find_event(self._graph.model, line.event))
+            case Wait():
+                for _ in self._passing(line.seconds):
+                    pass
+            case Every():
+                self._come_in(line.step)
+                self._repetitions[find_event(self._graph.model, line.step.event)] = _Repetition(line)
+            case Stop():
+                self._repetitions.pop(find_event(self._graph.model, line.event), None)
+
+    def _passing(self, seconds: float) -> Iterator[None]:
+        """Let time pass in whole periods, and yield after each.
+
+        A timer that is up when the time is over expires: it is late by the resolution of the clock, once for each timer
+        before it.
+        """
+        periods = math.ceil(round(seconds / self._period, 6))
+        ticks = periods * math.prod(one.of for one in self._rounds)
+        if ticks > _MOST_PERIODS:
+            hint = "write a shorter time, or play with a longer `controlLoop.periodMs`"
+            raise NamingError(f"this time has {ticks:,} ticks of the control loop, at most a million", hint)
+        over, expiries = self._now + seconds, self._expiries - 1
+        for _ in range(periods):
+            self._pass_period()
+            yield
+        while self._pass_expiry(over + min((self._expiries - expiries) * LATENESS, self._period)):
+            yield
+
+    def _pass_period(self) -> None:
+        super()._pass_period()
+        for repetition in list(self._repetitions.values()):
+            repetition.periods += 1
+            due = math.floor(round(repetition.periods * self._period / repetition.line.seconds, 6))
+            for _ in range(due - repetition.count):
+                repetition.count += 1
+                with self._causing(repetition.line):
+                    self._come_in(repetition.line.step)
 
     def _come_in(self, line: IncomingEvent) -> None:
         event = find_event(self._graph.model, line.event)
@@ -284,9 +298,9 @@ class Player(Drive):
             kind = self.incoming[event]
             reads = [logged.path for _, shown in kind.events for logged in shown]
             data = None
-            is_message = line.is_message or _is_raw([logged for _, shown in kind.events for logged in shown], line.data)
+            is_message = line.is_message or is_raw([logged for _, shown in kind.events for logged in shown], line.data)
             if line.data is not None and not is_message and reads:
-                data = {"value": _by_index(line.data, reads)}
+                data = {"value": by_index(line.data, reads)}
             whole = with_nan(dict(line.data)) if is_message else None
             played = TraceLine(line.span.line, 0.0, "in", event_name(event), data, whole)
             fields = merged(fields, Reader(describe_incoming(kind)).message([played]))
@@ -454,6 +468,31 @@ class Player(Drive):
 
     # Expectations
 
+    def _expectation(self, line: Expectation) -> Diagnostic | None:
+        """Return a finding if an expectation is not met, now or in its time."""
+        fault = self._unmet(line)
+        if fault is None or line.within is None:
+            return fault
+        for _ in self._passing(line.within):
+            fault = self._unmet(line)
+            if fault is None:
+                return None
+        return replace(fault, message=f"after {line.within:g} s, {fault.message}")
+
+    def _unmet(self, line: Expectation) -> Diagnostic | None:
+        match line:
+            case Holds(text=text):
+                holds = evaluate(self._conditions[line], self._controller.engine.read)
+                return None if holds else line.fault(f"`{text}` does not hold", self._state())
+            case Permission():
+                return self._verdict(line, find_event(self._graph.model, line.event))
+            case Violation(assumption=assumption):
+                violated = assumption in self._controller.violations[self._violations_before :]
+                return None if violated else line.fault(f"the last step does not violate `{assumption}`", self._state())
+            case SentCommand():
+                return self._sent(line, find_event(self._graph.model, line.event))
+        return None
+
     def _verdict(self, line: Permission, event: sct.Event) -> Diagnostic | None:
         engine = self._controller.engine
         by, phrase = engine.blocked_by(event_name(event)), words(event)
@@ -475,22 +514,36 @@ class Player(Drive):
         return line.fault(f"the {phrase} is not forbidden by `{line.by}`, but by {others}", self._state())
 
     def _sent(self, line: SentCommand, event: sct.Event) -> Diagnostic | None:
-        lines = enumerate(map(json.loads, self._lines.lines[self._since :]), self._since)
-        sent_lines = [(number, entry) for number, entry in lines if entry["event"] == event_name(event)]
-        phrase = words(event)
+        name, phrase = event_name(event), words(event)
+        lines = enumerate(self._lines.lines[self._since :], self._since)
+        entries = [(number, json.loads(text)) for number, text in lines if f'"{name}"' in text]
+        entries = [(number, entry) for number, entry in entries if entry["event"] == name]
         if not line.expected:
-            return line.fault(f"the {phrase} was sent") if sent_lines else None
-        if not sent_lines:
+            return line.fault(f"the {phrase} was sent") if entries else None
+        if not entries:
             return line.fault(f"the {phrase} was not sent since the last step", self._state())
+        if line.data is None:
+            return _counted(line, phrase, len(entries))
         # The log does not show objects that are forwarded unchanged.
-        sent = [_with_handed_on(entry, self._controller.messages.get(number)) for number, entry in sent_lines]
-        if line.data is None or any(_agrees(line.data, data) for data in sent):
-            return None
-        unknown = _first_unknown(line.data, sent[-1], self._handed_on(event))
+        messages = self._controller.messages
+        sent = [sent_data(entry, messages.get(number)) for number, entry in entries]
+        whole = [self._whole(event, messages.get(number)) for number, _ in entries]
+        count = sum(any(agrees(line.data, data) for data in both) for both in zip(sent, whole, strict=True))
+        if count:
+            return _counted(line, f"{phrase} with this data", count)
+        unknown = first_unknown(line.data, sent[-1], self._handed_on(event))
         if unknown:
             message = f"`{unknown}` of the {phrase} cannot be compared: the node forwards it unchanged"
             return line.fault(message, "leave it out: times and fields of unknown definitions are not compared")
-        return line.fault(f"the {phrase} was sent with other data", f"the sent data is {json_text(sent[-1])}")
+        shown = with_expected_defaults(sent[-1], whole[-1], line.data)
+        return line.fault(f"the {phrase} was sent with other data", f"the sent data is {json_text(shown)}")
+
+    def _whole(self, event: sct.Event, message: Any) -> Any:
+        """Return all fields of a sent message."""
+        interface, section = self._controller.type_of(event)
+        kind = NestedType(interface.package, interface.type)
+        value = {} if message is None else plain(message)
+        return with_defaults(self._distribution, kind, section, value, self._handed_on(event))
 
     def _handed_on(self, event: sct.Event) -> list[Sequence[str]]:
         """Return the paths in a command at which data is forwarded unchanged."""
@@ -526,82 +579,9 @@ _WHY = {
 }
 
 
-def _is_raw(reads: Sequence[LoggedValue], data: Any) -> bool:
-    """Return whether data has the fields of the ROS message, not what the event log has in their place.
-
-    The event log has literals for enums, and lists for arrays that the model reads as a whole. Raises NamingError for
-    data with both, and for a lone value in the place of a literal.
-    """
-    values = [(message_read, _value_at(data, message_read.path)) for message_read in reads]
-    raw = [
-        value
-        for message_read, value in values
-        if value is not None
-        and (
-            not isinstance(value, str)
-            if message_read.conversion is not None
-            else isinstance(value, dict) and bool(value) and all(name.isdigit() for name in value)
-        )
-    ]
-    has_literals = any(message_read.conversion is not None and isinstance(value, str) for message_read, value in values)
-    if raw and (has_literals or not isinstance(data, dict)):
-        raise NamingError(
-            f"{json.dumps(raw[0])} is ROS data instead of a literal", "write `with message {…}` with all fields"
-        )
-    return bool(raw)
-
-
-def _value_at(data: Any, path: Sequence[str]) -> Any:
-    """Return the value at a path of fields and indices; None if there is none. A lone value has every path."""
-    for step in path:
-        if isinstance(data, list):
-            data = data[int(step)] if step.isdigit() and int(step) < len(data) else None
-        elif isinstance(data, dict):
-            data = data.get(step)
-    return data
-
-
-def _by_index(value: Any, reads: Sequence[Sequence[str]]) -> Any:
-    """Return data in which objects from index to element replace lists whose elements are read one by one."""
-    if isinstance(value, list) and any(path and path[0].isdigit() for path in reads):
-        value = {str(index): element for index, element in enumerate(value)}
-    if not isinstance(value, dict):
-        return value
-    below = {name: [path[1:] for path in reads if path and path[0] == name] for name in value}
-    return {name: _by_index(inner, below[name]) for name, inner in value.items()}
-
-
-def _agrees(expected: Any, actual: Any) -> bool:
-    """Return whether data has the expected values; fields that are not named may have any value."""
-    if isinstance(expected, dict) and isinstance(actual, dict):
-        return all(name in actual and _agrees(value, actual[name]) for name, value in expected.items())
-    if isinstance(expected, list) and isinstance(actual, list):
-        return len(expected) == len(actual) and all(map(_agrees, expected, actual))
-    return same(expected, actual)
-
-
-def _with_handed_on(entry: Mapping[str, Any], message: Any) -> Any:
-    """Return the data of a line of the log, with the known fields of forwarded objects in the message."""
-    logged = entry.get("data", {}).get("value")
-    return _plain(message) if isinstance(logged, dict) else logged
-
-
-def _plain(value: Any) -> Any:
-    """Return data of ROS as JSON."""
-    if isinstance(value, Record):
-        return {name: _plain(inner) for name, inner in vars(value).items() if name != "wire_types"}
-    return [_plain(inner) for inner in value] if isinstance(value, list) else value
-
-
-def _first_unknown(expected: Any, actual: Any, handed_on: Sequence[Sequence[str]], path: tuple[str, ...] = ()) -> str:
-    """Return the first expected field that is missing in forwarded data, as `pose.position`; empty if there is none."""
-    if isinstance(expected, dict) and isinstance(actual, dict):
-        for name, value in expected.items():
-            inside = (*path, name)
-            if name in actual:
-                unknown = _first_unknown(value, actual[name], handed_on, inside)
-            else:
-                unknown = ".".join(inside) if any(inside[: len(way)] == way for way in handed_on) else ""
-            if unknown:
-                return unknown
-    return ""
+def _counted(line: SentCommand, phrase: str, count: int) -> Diagnostic | None:
+    """Return a finding if a command was sent in another number than expected."""
+    if line.count in (None, count):
+        return None
+    times = f"{count} time{'s' * (count != 1)}"
+    return line.fault(f"the {phrase} was sent {times} since the last step, not {line.count}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import dataclass
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -12,7 +13,7 @@ from robosc.base.diagnostics import Diagnostic, Severity, Span
 from robosc.base.files.json_reading import JsonError, json_lines, json_value
 from robosc.model.semantics.failures import brings_data
 from robosc.model.semantics.roles import event_name, plant_of
-from robosc.model.semantics.steps import FIRST_WORDS, StepError, step_in_words
+from robosc.model.semantics.steps import FIRST_WORDS, TIME, StepError, seconds_in_words, step_in_words
 from robosc.run.simulation.data import DataError
 
 if TYPE_CHECKING:
@@ -29,6 +30,7 @@ REFUSE = "refuse cancel"
 _OF_DATA = ("reason", "value", "where")
 #: 100 days. Longer waits are mistakes.
 _LONGEST_WAIT = 8_640_000
+_TIME = re.compile(TIME)
 #: Seconds from which on a time is invalid.
 _LATEST = 1e12
 
@@ -58,8 +60,8 @@ def read_script(
 
     `others` are names that it may use only with `--loop`, or only without. `model` has the events that words name.
 
-    A line is `EVENT [JSON]`, with `--loop` also `wait SECONDS`, or a JSON object with `event` and maybe `data` (other
-    keys of an event log are ignored). With a model it may also be a step of a scenario, such as
+    A line is `EVENT [JSON]`, with `--loop` also `wait SECONDS` or `wait 500 ms`, or a JSON object with `event` and
+    maybe `data` (other keys of an event log are ignored). With a model it may also be a step of a scenario, such as
     `error from lift because timeout`. Empty lines and lines that begin with `#` are no steps.
     """
     steps: list[ScriptStep] = []
@@ -174,13 +176,15 @@ class _Line:
         return ScriptStep(self._number, event, data) if event == REFUSE or self._known(event, self._start) else None
 
     def _wait(self, seconds: str) -> ScriptStep | None:
+        with_unit = _TIME.fullmatch(seconds.strip())
         try:
-            duration = float(seconds)
+            duration = seconds_in_words(with_unit) if with_unit else float(seconds)
         except ValueError:
             duration = -1.0
         if 0.0 <= duration <= _LONGEST_WAIT:
             return ScriptStep(self._number, WAIT, {"seconds": duration})
-        self._fault(self._start, f"`wait` needs a number of seconds from 0 to {_LONGEST_WAIT}", "write `wait 3.0`", 4)
+        message = f"`wait` needs a number of seconds from 0 to {_LONGEST_WAIT}"
+        self._fault(self._start, message, "write `wait 3.0` or `wait 500 ms`", 4)
         return None
 
     def _known(self, name: str, column: int) -> bool:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import click
@@ -15,11 +14,10 @@ from robosc.base.files.writing import write_file
 from robosc.base.ros_types import RosTypes
 from robosc.language.checks import check as rules_of
 from robosc.language.checks.automatic_edits import safe_edits
-from robosc.language.libraries import search_folders
 from robosc.language.reading import read as read_text
 from robosc.language.text import Documents
 from robosc.tools.cli import CallError, interruption, say
-from robosc.tools.cli.file_watch import whenever_files_change
+from robosc.tools.cli.file_watch import watch as watch_files
 from robosc.tools.cli.options import FILE, Paths, findings_format, paths
 from robosc.tools.cli.reading import read
 from robosc.tools.cli.report import Report
@@ -60,21 +58,11 @@ def command(models: Sequence[str], form: str, fix: bool, watch: bool, paths: Pat
         _check(models, form, paths)
         return
 
-    def again(changed: Sequence[str]) -> None:
-        because = f": {', '.join(map(visible, changed))} changed" if changed else ""
-        say(f"checking {', '.join(map(visible, models))}{because}", err=True)
-        try:
-            _check(models, form, paths)
-            say("no errors", err=True)
-        except click.exceptions.Exit:
-            pass  # the report has the errors
-        except OSError as error:
-            say(f"{visible(str(error.filename))}: {error.strerror}", err=True)
-        say("waiting for changes; stop with Ctrl-C", err=True)
+    def check_all() -> None:
+        _check(models, form, paths)
+        say("no errors", err=True)
 
-    whenever_files_change(
-        again, models, [*dict.fromkeys(Path(model).parent for model in models), *search_folders(paths.libraries)]
-    )
+    watch_files("checking", check_all, models, (), paths)
 
 
 class _CheckedModel(NamedTuple):

@@ -6,16 +6,46 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
+import click
+
+from robosc.base.diagnostics.visible import visible
 from robosc.base.files import reading as files
+from robosc.language.libraries import search_folders
+from robosc.tools.cli import say
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
+
+    from robosc.tools.cli.options import Paths
 
 #: Polling period.
 PERIOD_SECONDS = 0.3
 
 #: Identity of a text without its content: time of change, length, and file number.
 _Stamp: TypeAlias = tuple[int, int, int]
+
+
+def watch(action: str, do: Callable[[], None], models: Sequence[str], others: Sequence[str], paths: Paths) -> None:
+    """Call `do` now and again after each change of its files, until Ctrl-C. An error does not end this.
+
+    `action` is a verb such as `checking`. `others` are names of further files that `do` reads, or would read.
+    """
+
+    def again(changed: Sequence[str]) -> None:
+        because = f": {', '.join(map(visible, changed))} changed" if changed else ""
+        say(f"{action} {', '.join(map(visible, models))}{because}", err=True)
+        try:
+            do()
+        except click.exceptions.Exit:
+            pass  # the report has the errors
+        except click.ClickException as error:
+            say(f"Error: {error.format_message()}", err=True)
+        except OSError as error:
+            say(f"{visible(str(error.filename))}: {error.strerror}", err=True)
+        say("waiting for changes; stop with Ctrl-C", err=True)
+
+    folders = [*dict.fromkeys(Path(model).parent for model in models), *search_folders(paths.libraries)]
+    whenever_files_change(again, [*models, *others], folders)
 
 
 def whenever_files_change(

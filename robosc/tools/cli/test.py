@@ -4,19 +4,22 @@ from __future__ import annotations
 
 import shlex
 import sys
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
 
 import click
 
 import robosc
 from robosc.analysis.verify.c_program import CProgram, c_compiler
-from robosc.base.diagnostics import Severity
+from robosc.base.diagnostics import Severity, as_junit, as_text
 from robosc.base.files import reading as files
-from robosc.base.files.writing import temporary_folder, write
+from robosc.base.files.writing import refuse, temporary_folder, write, write_file
 from robosc.base.ros_types import RosTypes
 from robosc.language.checks import check
+from robosc.language.configuration import FILE_NAME
 from robosc.language.reading import read as read_text
 from robosc.language.text import Documents, decode
 from robosc.m2t.models import Models, TraceTest
@@ -26,6 +29,7 @@ from robosc.run.scenario_tests import RULE, LiveError, LiveNode, Player, read_sc
 from robosc.run.scenario_tests.conditions import add_conditions
 from robosc.run.scenario_tests.operations import Operations
 from robosc.tools.cli import CallError, say
+from robosc.tools.cli.file_watch import watch as watch_files
 from robosc.tools.cli.options import (
     FILE,
     Paths,
@@ -69,21 +73,13 @@ if TYPE_CHECKING:
     help="With --ros2: the command that starts the node, such as a compiled one.  [default: `robosc run`]",
 )
 @click.option("--traces", type=click.Path(file_okay=False), help="Also write the event log of each scenario to FOLDER.")
+@click.option("--junit", type=click.Path(dir_okay=False), help="Also write JUnit XML to FILE.")
+@click.option("--watch", is_flag=True, help="Test again after each change of a file, until Ctrl-C.")
 @configuration
 @findings_format
 @synthesizer
 @paths
-def command(
-    model: str,
-    scenarios: Sequence[str],
-    engine: str,
-    live: bool,
-    node: str | None,
-    traces: str | None,
-    chosen: str | None,
-    form: str,
-    paths: Paths,
-) -> None:
+def command(watch: bool, **options: Any) -> None:
     """Run scenario tests: events from the robot, and the expected reactions of its controller.
 
     MODEL is a .rscd file with a robot. docs/scenarios.md describes the format of a FILE. The robot's controller in
@@ -94,52 +90,128 @@ def command(
     \b
     Examples:
       robosc test line_follower.rscd line_follower.scenarios
+      robosc test line_follower.rscd line_follower.scenarios --watch
       robosc test line_follower.rscd *.scenarios --engine c
+      robosc test line_follower.rscd *.scenarios --junit scenarios.xml
       robosc test line_follower.rscd *.scenarios --ros2
       robosc test porter.rscd *.scenarios --ros2 --node "ros2 run porter_controller porter_controller"
       robosc test line_follower.rscd line_follower.scenarios --traces ros2/line_follower_controller/test/traces
 
     Exit status: 0 all scenarios passed, 1 a scenario failed, or errors, 2 a wrong call, 3 no supervisor exists.
     """
-    if not model.endswith(".rscd"):
-        raise CallError(f"{model} is not a text file: scenarios need a robot in a .rscd file")
-    if node is not None and not live:
+    call = _Call(**options)
+    if not call.model.endswith(".rscd"):
+        raise CallError(f"{call.model} is not a text file: scenarios need a robot in a .rscd file")
+    if call.node is not None and not call.live:
         raise click.UsageError("--node needs --ros2")
-    with Report(form, aside=form != "text") as report:
-        models, expressions, played = _read(model, scenarios, paths, report)
-        settings = read_configuration(model, chosen, report)
+    if watch:
+        settings = call.chosen or str(Path(call.model).with_name(FILE_NAME))
+        watch_files("testing", partial(_test, call), [call.model], [*call.scenarios, settings], call.paths)
+    _test(call)
+
+
+@dataclass(frozen=True)
+class _Call:
+    """Arguments and options of a call."""
+
+    model: str
+    scenarios: Sequence[str]
+    engine: str
+    live: bool
+    node: str | None
+    traces: str | None
+    junit: str | None
+    chosen: str | None
+    form: str
+    paths: Paths
+
+
+@dataclass
+class _Run:
+    """Run of a scenario: the calls of its control loop, its event log, its seconds, and its findings."""
+
+    scenario: Scenario
+    operations: Operations
+    log: str
+    seconds: float
+    findings: list[Diagnostic]
+
+
+def _test(call: _Call) -> None:
+    """Play all scenarios once, and print their results after the findings."""
+    runs: list[_Run] = []
+    began = perf_counter()
+    try:
+        with Report(call.form, aside=call.form != "text") as report:
+            _play_all(call, report, runs)
+    except click.exceptions.Exit:
+        _show_results(runs, perf_counter() - began)
+        raise
+    _show_results(runs, perf_counter() - began)
+
+
+def _play_all(call: _Call, report: Report, runs: list[_Run]) -> None:
+    """Add the runs of all scenarios to the list, and their findings to the report."""
+    if call.junit:
+        refuse(call.junit)
+    models, expressions, scenarios = _read(call.model, call.scenarios, call.paths, report)
+    settings = read_configuration(call.model, call.chosen, report)
+    report.stop_on_errors()
+    supervise_models(models, report)
+    report.stop_on_errors()
+    assert models.rosgraph is not None
+    types = RosTypes(call.paths.interfaces)
+    report.add(unfit_data(models.rosgraph, types, scenarios))
+    report.stop_on_errors()
+    player = Player(models.rosgraph, settings, types.distribution(2), expressions)
+    live: LiveNode | None = None
+    if call.live:
+        report.add(TARGETS["ros2"].findings(models, settings))
         report.stop_on_errors()
-        supervise_models(models, report)
-        report.stop_on_errors()
-        assert models.rosgraph is not None
-        types = RosTypes(paths.interfaces)
-        report.add(unfit_data(models.rosgraph, types, played))
-        report.stop_on_errors()
-        distribution = types.distribution(2)
-        player = Player(models.rosgraph, settings, distribution, expressions)
-        started: LiveNode | None = None
-        if live:
-            report.add(TARGETS["ros2"].findings(models, settings))
-            report.stop_on_errors()
-            started = _live(models, settings, player, node)
-        logs: dict[str, str] = {}
-        with progress("playing"):
-            failed = 0
-            runs = []
-            for number, scenario in enumerate(played, 1):
-                operations = Operations()
-                deviations = player.play(scenario, operations)
-                if started is not None and not deviations:
-                    deviations = _followed(started, scenario, player)
-                runs.append(operations)
-                failed += bool(deviations)
-                report.add(deviations)
-                logs[f"scenario_{number}.jsonl"] = "".join(f"{line}\n" for line in player.trace)
-            if engine == "c":
-                report.add(_compared(models, settings, runs))
-        if traces is not None:
-            write({Path(traces): logs})
-        say(f"{len(played)} scenario{'s' * (len(played) != 1)}, {failed} failed", err=True)
+        live = _live(models, settings, player, call.node)
+    with progress(lambda: f"playing scenario {len(runs) + 1} of {len(scenarios)}"):
+        runs.extend(_play(scenario, player, live) for scenario in scenarios)
+        if call.engine == "c":
+            _compare(models, settings, runs)
+    for run in runs:
+        report.add(run.findings)
+    if call.traces is not None:
+        write({Path(call.traces): {f"scenario_{number}.jsonl": run.log for number, run in enumerate(runs, 1)}})
+    if call.junit:
+        write_file(call.junit, _junit(runs, report.texts))
+
+
+def _play(scenario: Scenario, player: Player, live: LiveNode | None) -> _Run:
+    began = perf_counter()
+    operations = Operations()
+    findings = player.play(scenario, operations)
+    if live is not None and not findings:
+        findings = _followed(live, scenario, player)
+    log = "".join(f"{line}\n" for line in player.trace)
+    return _Run(scenario, operations, log, perf_counter() - began, findings)
+
+
+def _show_results(runs: Sequence[_Run], seconds: float) -> None:
+    """Print the failed scenarios, and how many failed and passed."""
+    if not runs:
+        return
+    failed = [run.scenario for run in runs if run.findings]
+    for scenario in failed:
+        say(f'FAILED {scenario.line.file}:{scenario.line.span.line} "{scenario.name}"', err=True)
+    counts = {"failed": len(failed), "passed": len(runs) - len(failed)}
+    say(f"{', '.join(f'{count} {word}' for word, count in counts.items() if count)} in {seconds:.2f} s", err=True)
+
+
+def _junit(runs: Sequence[_Run], texts: Mapping[str, str]) -> str:
+    """Return JUnit XML: a suite for each file, and a test case for each scenario."""
+    cases = []
+    for run in runs:
+        line = run.scenario.line
+        details = as_text.render(run.findings, texts, as_text.plain)
+        failure = as_junit.Failure(run.findings[0].message, "failed", details) if run.findings else None
+        name = run.scenario.name
+        cases.append(as_junit.TestCase(line.file, name, line.file, run.seconds, line.span.line, failure))
+    return as_junit.render("robosc test", cases)
 
 
 def _read(
@@ -209,13 +281,14 @@ def _followed(live: LiveNode, scenario: Scenario, player: Player) -> list[Diagno
     return [] if difference is None else [difference]
 
 
-def _compared(models: Models, settings: Configuration, runs: Sequence[Operations]) -> list[Diagnostic]:
-    """Return the deviations of the generated control loop. Raises CallError if it cannot be compiled here."""
+def _compare(models: Models, settings: Configuration, runs: Sequence[_Run]) -> None:
+    """Add the deviations of the generated control loop to the runs. Raises CallError if it cannot be compiled here."""
     compiler = c_compiler()
     if compiler is None:
         raise CallError("no C compiler found to play scenarios with")
     generated = robosc.generate("supervisor", models, settings)
     with temporary_folder() as folder:
         program = CProgram(models.sct, folder, compiler, generated)
-        differences = [run.compare(program) for run in runs]
-    return [difference for difference in differences if difference is not None]
+        for run in runs:
+            difference = run.operations.compare(program)
+            run.findings += [difference] if difference is not None else []

@@ -17,7 +17,7 @@ from robosc.language.grammar import Failure, Node, parse, pattern, words_of
 from robosc.language.highlighting import rules
 from robosc.language.highlighting.pygments_lexer import _TOKENS, RoboscLexer
 from robosc.language.highlighting.rules import WORDS, Kind
-from robosc.language.highlighting.textmate import grammar
+from robosc.language.highlighting.textmate import grammar, scenarios_grammar
 from robosc.model.semantics.naming import ROBOSC_FUNCTIONS, ROBOSC_KEYWORDS, ROBOSC_QUANTIFIERS
 
 ROOT = Path(__file__).parents[2].parent
@@ -115,6 +115,50 @@ def test_words_in_context(text: str, words: list[str]) -> None:
 
 def test_the_textmate_grammar_is_up_to_date(golden: Callable[[Path, str], None]) -> None:
     golden(ROOT / "editors" / "vscode" / "syntaxes" / "robosc.tmLanguage.json", grammar())
+
+
+def test_the_textmate_grammar_of_scenarios_is_up_to_date(golden: Callable[[Path, str], None]) -> None:
+    golden(ROOT / "editors" / "vscode" / "syntaxes" / "robosc-scenarios.tmLanguage.json", scenarios_grammar())
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ('scenario "every 3 s"', ["scenario"]),
+        ("before each {", ["before", "each"]),
+        ("  every 500 ms response from closed with true", ["every", "ms", "response", "from", "with", "true"]),
+        ("  repeat 3 { every 1 s error with 4 }", ["repeat", "every", "s", "with"]),
+        ("  stop response from closed", ["stop", "response", "from"]),
+        ("  stop closed", ["stop"]),
+        ("  stop with true", ["with", "true"]),
+        ("  stop", []),
+        ("  wait 1.5 min // wait 2 s", ["wait", "min"]),
+        ("  refuse cancel of go", ["refuse", "cancel", "of"]),
+        ("  error from lift because timeout", ["error", "from", "because"]),
+        ('  scan with message {"with": [1]}', ["with", "message"]),
+        (
+            "  expect go sent 3 times with {} within 2 s",
+            ["expect", "sent", "times", "with", "within", "s"],
+        ),
+        ("  expect go not sent", ["expect", "not", "sent"]),
+        ("  expect go forbidden by SR1", ["expect", "forbidden", "by"]),
+        ("  expect Left.sent and n < 3", ["expect", "and"]),
+    ],
+)
+def test_the_textmate_grammar_colours_the_words_of_scenarios(line: str, words: list[str]) -> None:
+    assert [word for word, scope in scopes(scenarios_grammar(), line) if scope in WORDS] == words
+
+
+def scopes(document: str, line: str) -> Iterator[tuple[str, str]]:
+    """Yield the pieces of a line with their scopes: at each position, the first pattern that matches counts."""
+    compiled = [(re.compile(pattern["match"]), pattern) for pattern in json.loads(document)["patterns"]]
+    at = 0
+    while at < len(line):
+        matches = [(match, pattern) for expression, pattern in compiled if (match := expression.match(line, at))]
+        match, pattern = matches[0] if matches else (None, {})
+        for _, word, scope in pieces(match, pattern):
+            yield word, scope
+        at = match.end() if match else at + 1
 
 
 @pytest.mark.parametrize("path", TEXTS[::6], ids=lambda path: str(path.relative_to(ROOT)))

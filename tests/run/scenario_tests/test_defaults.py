@@ -129,7 +129,7 @@ def test_a_trace_names_the_defaults_that_only_one_ros_has() -> None:
         ('{"pose": {"position": {"x": 2.0}}}', ""),
         ('{"pose": {"orientation": {"w": 1.0}}}', ""),
         ('{"pose": {"position": {"x": 3.0}}}', "was sent with other data"),
-        ('{"pose": {"positon": {"x": 2.0}}}', "`pose.positon` of the request to `Mission.go` cannot be compared"),
+        ('{"pose": {"positon": {"x": 2.0}}}', "geometry_msgs/Pose has no field `positon`"),
         ('{"header": {"stamp": {"sec": 1}}}', "`header.stamp` of the request to `Mission.go` cannot be compared"),
     ],
 )
@@ -143,6 +143,94 @@ def test_what_is_handed_on_is_compared(expected: str, fault: str) -> None:
     assert answer.exit_code == bool(fault), answer.output
     if "other data" in fault:
         assert '"position":{"x":2,"y":0,"z":0}' in answer.output
+
+
+SENDER = """\
+robot Sender {
+  component Mission {
+    outgoing message name with identifier: "/name", type: string
+    incoming message goal with identifier: "/goal", type: geometry_msgs/PoseStamped
+    incoming message echo with identifier: "/echo", type: string
+    incoming message speed with identifier: "/speed", type: double
+    incoming message beep with identifier: "/beep", type: std_msgs/Bool
+    service power with identifier: "/power", request: std_srvs/SetBool, response: std_srvs/SetBool
+
+    behaviour {
+      variable text: string
+
+      initial marked state waiting { on response from name do text := value goto driving }
+      marked state driving {
+        on request to goal
+        on request to echo
+        on request to speed
+        on request to beep
+        on request to power goto switching
+      }
+      state switching {
+        on response from power goto driving
+        on error from power goto driving
+      }
+    }
+  }
+
+  provide goal with { pose: { position: { x: 2.0 } } }
+  provide echo with Mission.text
+  provide speed with 0.5
+  provide power with { data: true }
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("expected", "sent"),
+    [
+        ('goal sent with {"pose": {"position": {"x": 2.0, "y": 0.0}, "orientation": {"w": 1.0}}}', ""),
+        ('goal sent with {"pose": {"orientation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}}}', ""),
+        (
+            'goal sent with {"pose": {"orientation": {"w": 0.0}}}',
+            '{"pose":{"position":{"x":2},"orientation":{"w":1}}}',
+        ),
+        ('goal sent with {"header": {"frame_id": ""}}', '{"pose":{"position":{"x":2}}}'),  # the node sets it
+        ('echo sent with "hello"', ""),
+        ('echo sent with {"data": "hello"}', ""),
+        ('echo sent with {"data": "hell"}', '{"data":"hello"}'),
+        ("speed sent with 0.5", ""),
+        ('speed sent with {"data": 0.5}', ""),
+        ("beep sent with false", ""),
+        ('beep sent with {"data": false}', ""),
+        ("beep sent with true", '{"data":false}'),
+        ("power sent with true", ""),
+        ('power sent with {"data": true}', ""),
+        ("power sent with false", "true"),
+        ("goal sent with 2.0", '{"pose":{"position":{"x":2}}}'),
+    ],
+)
+def test_sent_data_has_the_defaults_of_ros_and_a_single_value_is_an_object_with_one_field(
+    expected: str, sent: str
+) -> None:
+    Path("sender.rscd").write_text(SENDER)
+    answer = played("sender.rscd", f'  name with {{"data": "hello"}}\n  expect {expected} within 500 ms\n')
+    assert answer.exit_code == bool(sent), answer.output
+    assert f"the sent data is {sent}" in answer.output or not sent
+
+
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [
+        ('speed sent with {"dat": 0.5}', "has no field `dat`"),
+        ('goal sent with {"pose": {"orientaton": {"w": 1.0}}}', "geometry_msgs/Pose has no field `orientaton`"),
+        ('power sent with {"success": true}', "std_srvs/SetBool has no field `success`"),
+    ],
+)
+def test_an_expected_field_that_the_type_does_not_have_is_reported_before_the_first_scenario(
+    data: str, message: str
+) -> None:
+    Path("sender.rscd").write_text(SENDER)
+    answer = played("sender.rscd", f"  expect speed sent\n  expect {data}\n")
+    assert answer.exit_code == 1
+    assert "own.scenarios:3:3: error: " in answer.output
+    assert message in answer.output
+    assert "failed in" not in answer.output
 
 
 @pytest.mark.parametrize("loop", [[], ["--loop"]])

@@ -107,3 +107,56 @@ def test_many_short_waits(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     Path("clock.scenarios").write_text(f'scenario "steps"\n  start\n{steps}  expect C.n >= 29 and C.n <= 30\n')
     answer = CliRunner().invoke(main, ["test", "clock.rscd", "clock.scenarios"], catch_exceptions=False)
     assert answer.exit_code == 0, answer.output
+
+
+CHAIN = """\
+robot Chain {
+  component C {
+    outgoing message start with identifier: "/start", type: none
+
+    behaviour {
+      initial marked state off { on response from start goto first }
+      marked state first { after 500 ms goto second }
+      marked state second { after 500 ms goto third }
+      marked state third { after 1 s goto first on response from start goto off }
+    }
+  }
+}
+"""
+
+
+@pytest.mark.parametrize("engine", ["python", pytest.param("c", marks=pytest.mark.build)])
+@pytest.mark.parametrize(
+    ("steps", "state"),
+    [
+        ("wait 500 ms", "second"),
+        ("wait 400 ms", "first"),
+        ("wait 1 s", "third"),
+        ("wait 500 ms\nwait 500 ms", "third"),
+        ("wait 250 ms\nwait 250 ms", "second"),
+        ("repeat 5 { wait 100 ms }", "second"),
+        ("wait 2 s", "first"),
+        ("wait 2 s\nwait 500 ms", "second"),
+        ("wait 500 ms\nwait 500 ms\nstart", "off"),
+    ],
+)
+def test_a_time_that_is_up_at_the_end_of_a_wait_has_expired(
+    steps: str, state: str, engine: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A tick of the control loop is due at the same moment."""
+    monkeypatch.chdir(tmp_path)
+    Path("chain.rscd").write_text(CHAIN)
+    Path("chain.scenarios").write_text(f'scenario "one"\nstart\n{steps}\nexpect C.{state}\n')
+    answer = CliRunner().invoke(
+        main, ["test", "chain.rscd", "chain.scenarios", "--engine", engine], catch_exceptions=False
+    )
+    assert answer.exit_code == 0, answer.output
+
+
+def test_a_wait_goes_beyond_its_time_by_less_than_a_period(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A timer that restarts each millisecond is late each time; other times must not be up too early."""
+    monkeypatch.chdir(tmp_path)
+    Path("clock.rscd").write_text(CLOCK.replace("LENGTH", "1"))
+    Path("clock.scenarios").write_text('scenario "one"\n  start\n  wait 100 ms\n  expect C.n >= 30 and C.n <= 70\n')
+    answer = CliRunner().invoke(main, ["test", "clock.rscd", "clock.scenarios"], catch_exceptions=False)
+    assert answer.exit_code == 0, answer.output

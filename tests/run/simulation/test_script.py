@@ -337,8 +337,8 @@ def test_a_time_is_an_event_as_any(lamp: Path) -> None:
 
 
 def test_a_script_lets_time_go_by(lamp: Path) -> None:
-    """`--loop` scripts have `wait SECONDS`."""
-    lines = 'message_pressed.u_response\nwait 29.999\nwait 0.001\n{"event": "wait", "data": {"seconds": 100}}'
+    """`--loop` scripts have `wait SECONDS`, also with a unit."""
+    lines = 'message_pressed.u_response\nwait 29.999\nwait 1 ms\n{"event": "wait", "data": {"seconds": 100}}'
     done = simulate("--script", "-", "--loop", lines=lines, model=lamp)
     answers = [json.loads(line) for line in done.stdout.splitlines()]
     assert [answer["happened"] for answer in answers[1:]] == [[], ["component_Button.u_after1"], []]

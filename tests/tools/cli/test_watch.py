@@ -1,4 +1,4 @@
-"""`check --watch` checks each change of its input files once, until an interrupt; no test waits."""
+"""`check --watch` and `test --watch` react to each change of their inputs once, until an interrupt; no test waits."""
 
 import os
 import signal
@@ -125,3 +125,70 @@ def test_ctrl_c_ends_it_without_a_word(door: Path) -> None:
     assert process.returncode == 130
     assert said[-1] == "waiting for changes; stop with Ctrl-C\n"
     assert rest == ""
+
+
+OPENS = """\
+scenario "opens"
+  expect open sent
+"""
+
+
+def lines_without_time(said: str) -> list[list[str]]:
+    return [[line.partition(" in ")[0] for line in lines] for lines in rounds(said)]
+
+
+def test_scenarios_are_played_again_after_each_change_of_an_input(
+    run: Run, door: Path, meanwhile: Callable[..., None]
+) -> None:
+    scenarios = door.with_name("door.scenarios")
+    scenarios.write_text(OPENS)
+    settings = door.with_name("controller-config.json")
+    meanwhile(
+        changing(scenarios, "open sent", "open not sent"),
+        lambda: None,
+        lambda: settings.write_text('{"controlLoop": {"periodMs": 1000}}'),
+        lambda: settings.write_text('{"controlLoop": {"periodMs": "long"}}'),
+        settings.unlink,
+        changing(scenarios, "open not sent", "open sent twice"),
+        changing(scenarios, "open sent twice", "open sent"),
+        changing(door, "open needs Leaf.closed", "open needs Leaf.opened"),
+    )
+    answer = run("test", door.name, scenarios.name, "--watch")
+    assert answer.exit_code == 130
+    failed = ["1 error", 'FAILED door.scenarios:1 "opens"', "1 failed"]
+    first, *others = lines_without_time(answer.stderr)
+    assert first == ["testing door.rscd", "1 passed"]
+    assert [(line.removeprefix("testing door.rscd: "), *rest) for line, *rest in others] == [
+        ("door.scenarios changed", *failed),
+        ("controller-config.json changed", *failed),
+        ("controller-config.json changed", "1 error"),
+        ("controller-config.json changed", *failed),
+        ("door.scenarios changed", "1 error"),
+        ("door.scenarios changed", "1 passed"),
+        ("door.rscd changed", "1 error, 3 warnings", *failed[1:]),
+    ]
+
+
+def test_a_library_that_changes_is_tested_again(run: Run, courier: Path, meanwhile: Callable[..., None]) -> None:
+    library = courier.parent / "parts" / "lamps.rscd"
+    courier.with_name("courier.scenarios").write_text('scenario "one"\n  expect light not sent\n')
+    meanwhile(changing(library, "incoming message light", "incoming message lamp"))
+    answer = run("test", courier.name, "courier.scenarios", "--watch", "-I", "parts")
+    assert answer.exit_code == 130
+    assert [lines[0] for lines in rounds(answer.stderr)] == [
+        "testing courier.rscd",
+        "testing courier.rscd: parts/lamps.rscd changed",
+    ]
+
+
+def test_a_call_that_cannot_be_executed_does_not_end_the_watch(
+    run: Run, door: Path, meanwhile: Callable[..., None]
+) -> None:
+    door.with_name("door.scenarios").write_text(OPENS)
+    meanwhile(lambda: door.write_text("library Doors {}\n"))
+    answer = run("test", door.name, "door.scenarios", "--watch")
+    assert answer.exit_code == 130
+    assert rounds(answer.stderr)[1][:2] == [
+        "testing door.rscd: door.rscd changed",
+        "Error: door.rscd has a library: only a robot that imports it has a supervisor",
+    ]
