@@ -87,7 +87,7 @@ def data_in_words(text: str, position: int) -> Any:
         hint = error.hint or "data is JSON, or the name of a literal"
         raise StepError(str(error), position + error.position, hint) from None
     if value is None:
-        raise StepError("`null` is not data", position, "leave out `with null`")
+        raise StepError("`null` is not data", position, 'leave it out; `{"data": null}` is a number that is not finite')
     return value
 
 

@@ -111,9 +111,9 @@ def with_defaults(
     if not isinstance(kind, wire.NestedType) or not isinstance(value, dict):
         return value
     try:
-        fields = distribution.fields(kind.package, kind.name, section) or {}
+        fields = distribution.fields(kind.package, kind.name, section) or wire.Fields({})
     except wire.DefinitionError:
-        fields = {}
+        fields = wire.Fields({})
     whole = dict(value)
     for name, field in fields.items():
         if name in value:

@@ -410,6 +410,8 @@ class _Reader:
             yield from self._sent(match, line, within, expected)
         else:
             by = match["by"].strip().strip('"') if match["by"] else None
+            if by is not None and not by.strip():
+                self._fault(expected, "`forbidden by` names no requirement", "write its name, or a part of its text")
             yield Permission(line.file, line.span, event_in_words(match), bool(match["forbidden"]), by, within=within)
 
     def _sent(self, match: re.Match[str], line: Line, within: float | None, expected: Line) -> Iterator[Line]:

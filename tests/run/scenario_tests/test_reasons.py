@@ -197,7 +197,7 @@ def test_a_late_answer_after_a_lost_goal_changes_nothing() -> None:
         ('error from lift with {"heights": [true]}', "value.heights[0] is true, expected a number", ""),
         ('stop with "false"', 'value is "false", expected a boolean', ""),
         ("stop with 0.5", "value is 0.5, expected a boolean", ""),
-        ("stop with null", "`null` is not data", "leave out `with null`"),
+        ("stop with null", "`null` is not data", "leave it out; `"),
     ],
 )
 def test_steps_that_cannot_be(step: str, message: str, hint: str) -> None:
@@ -206,6 +206,11 @@ def test_steps_that_cannot_be(step: str, message: str, hint: str) -> None:
     ((line, found, help_),) = findings(text)
     assert (line, found) == (2, message)
     assert hint in help_
+
+
+def test_an_expectation_names_the_requirement_that_forbids() -> None:
+    ((_, found, _),) = findings('scenario "one"\n  expect Base.idle\n  expect lift forbidden by ""\n')
+    assert found == "`forbidden by` names no requirement"
 
 
 @pytest.mark.parametrize(

@@ -211,7 +211,9 @@ def test_an_answer_that_can_be_read_by_hand(crane: Any) -> None:
     assert told == "action_go.u_error: the node can read this data, so it counts as action_go.u_response"
     told = session.do('action_go.u_error {"value": {"code": "x"}}')
     assert told == 'action_go.u_error: value.code is "x", expected an integer'
-    assert session.do("error from go with null") == "`null` is not data (leave out `with null`)"
+    assert session.do("error from go with null") == (
+        '`null` is not data (leave it out; `{"data": null}` is a number that is not finite)'
+    )
 
 
 def test_the_place_of_data_that_is_no_json() -> None:
