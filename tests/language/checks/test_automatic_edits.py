@@ -75,7 +75,8 @@ def baited(content: str, every: int = 1) -> str:
 def test_comments_do_not_change_what_is_found() -> None:
     """This ensures that later tests try the same edits as for the texts without comments."""
     for name in list(BROKEN)[::8]:
-        if "fault" not in name and "foreign" not in name:
+        # The numbers of `numbers` are several words: a comment between them changes what they are.
+        if "fault" not in name and "foreign" not in name and name != "numbers":
             before, after = (checked(content, PATHS[name]).findings for content in (BROKEN[name], baited(BROKEN[name])))
             assert [found.rule for found in before] == [found.rule for found in after], name
 
