@@ -21,7 +21,7 @@ from robosc.analysis.explain.answers import (
 from robosc.analysis.explain.obstacles import Obstacles
 from robosc.analysis.paths import Path, shortest_path
 from robosc.analysis.system import ExplainedSystem, SynthesizedSystem, whole_state
-from robosc.analysis.wording import join_with_and, name, words
+from robosc.analysis.wording import join_with_and, name, wanted_states, words
 from robosc.engine import Blocked
 from robosc.model.semantics.edges import edges_from
 from robosc.model.semantics.printing import RobotPrinter
@@ -146,12 +146,22 @@ def _way(system: SynthesizedSystem, start: Codes, allowed: Diagram) -> tuple[Tra
 
 
 def find_culprits(system: SynthesizedSystem, end: Codes) -> list[Note]:
-    """Return the invariants that a state violates, else the requirements that forbid something after it."""
-    violated = [
-        Note(requirement, requirement.text or "a requirement", ("forbids this state",))
-        for requirement in system.violated(end)
+    """Return the invariants that a state violates, else the requirements that forbid something after it.
+
+    If a requirement wants states that are unreachable from there, it comes first.
+    """
+    wanted = {requirement: wanted_states(requirement) for requirement in system.violated(end)}
+    notes = [
+        Note(
+            requirement,
+            requirement.text or "a requirement",
+            (f"needs a way to a {way}" if way else "forbids this state",),
+        )
+        for requirement, way in wanted.items()
     ]
-    return violated or [
+    if None in wanted.values():
+        return notes
+    return notes + [
         Note(requirement, requirement.text or "a requirement", (f"forbids the {words(requirement.event)}",))
         for requirement in forbidden_from(system, end)
     ]

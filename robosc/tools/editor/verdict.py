@@ -55,7 +55,11 @@ def _verdict(path: str, model: sct.SupervisoryControlModel, supervision: Supervi
     for weight in synthesis.weights:
         file, span = place(weight.requirements[0])
         if file == path:
-            forbids = "forbids" if isinstance(weight.requirements[0], sct.StateInvariant) else "restricts the robot in"
+            forbids = (
+                "forbids"
+                if isinstance(weight.requirements[0], sct.StateInvariant | sct.ReachabilityRequirement)
+                else "restricts the robot in"
+            )
             effect = f"{forbids} {format_count(weight.states, 'state')}" if weight.states else "matters in no state"
             requirements[str(span.line)] = effect
     guards: dict[str, list[str]] = {}

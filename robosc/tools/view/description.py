@@ -57,7 +57,7 @@ def describe(models: Models, texts: Mapping[str, str]) -> dict[str, Any]:
     ]
     invariants = [
         {"event": "", "name": invariant.name or "", "text": invariant.text, "place": describer.place(invariant)}
-        for invariant in model.invariants
+        for invariant in [*model.invariants, *model.reachabilityRequirements]
         if invariant.text
     ]
     return {
