@@ -32,13 +32,13 @@ def describe_blocking(reason: BlockReason) -> str:
         problem = violates(quote_requirements(reason.violated), reason.violated)
         if reason.event is None:
             return f"{problem} from the start"
-        if reason.event.controllable:
+        if reason.event.controllable or reason.goal is not None:
             return f"{way} needs {words(reason.event)}, after which {problem}"
         return f"{words(reason.event)} cannot be prevented, and after it {problem}"
     problem = unreachable
     if reason.event is None:
         problem += " at all"
-    elif reason.event.controllable:
+    elif reason.event.controllable or reason.goal is not None:
         problem += f": the shortest way to one needs {words(reason.event)} where {forbid(reason.requirements, 'it')}"
     else:
         problem = f"{words(reason.event)} cannot be prevented, and after it {problem}"

@@ -67,7 +67,7 @@ _MEANT = {
     **dict.fromkeys(("forall", "exists", "foreach", *ROBOSC_QUANTIFIERS), _QUANTIFIER),
     **dict.fromkeys(("else", "elif", "elseif"), _CASES),
     **dict.fromkeys(("mod", "%"), _MODULO),
-    "reachable": "write `requirement reachable condition from condition`; `property` only verifies it",
+    "reachable": "write `property reachable condition`, or `requirement reachable condition` to enforce it",
     "automaton": "write `requirement name: automaton { … }`",
     "then": _CHOICE,
     "?": _CHOICE,
