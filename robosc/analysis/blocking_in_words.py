@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 from robosc.analysis.wording import (
     NAMED,
     forbid,
+    goal_in_words,
     in_words,
     join_with_and,
     name,
     quote_requirements,
     violates,
-    wanted_states,
     words,
 )
 from robosc.model import sct
@@ -89,7 +89,7 @@ def way_out(counterexample: BlockingCounterexample) -> str:
         loosen = f"loosen the {'requirement' if len(counterexample.violated) == 1 else 'requirements'}"
         if all(isinstance(requirement, sct.Requirement) for requirement in counterexample.violated):
             return loosen
-        if goals := [wanted for requirement in counterexample.violated if (wanted := wanted_states(requirement))]:
+        if goals := list(filter(None, map(goal_in_words, counterexample.violated))):
             return f"give the robot a way from there to a {goals[0]}, or {loosen}"
         return f"{loosen}: add a `needs` requirement for each command, or a command that undoes the event"
     stuck = [f"`{name(plant)}`" for plant in counterexample.unmarked if plant.kind == sct.PlantKind.behaviour]

@@ -121,13 +121,13 @@ def violates(named: str, requirements: Sequence[sct.StatedRequirement]) -> str:
     )
     if events:
         return f"{join_with_and([words(event) for event in events])} can come, which {named} {_forbid(requirements)}"
-    goals = dict.fromkeys(map(wanted_states, requirements))
+    goals = dict.fromkeys(map(goal_in_words, requirements))
     if None not in goals:
         return f"{named} cannot be satisfied: no {' and no '.join(filter(None, goals))} can be reached"
     return f"{named} {'is' if len(requirements) == 1 else 'are'} violated"
 
 
-def wanted_states(requirement: sct.StatedRequirement) -> str | None:
+def goal_in_words(requirement: sct.StatedRequirement) -> str | None:
     """Return the states that a requirement wants to be reachable: "state with `Base.docked`"; None for other kinds."""
     if not isinstance(requirement, sct.ReachabilityRequirement):
         return None

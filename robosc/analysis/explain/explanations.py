@@ -21,7 +21,7 @@ from robosc.analysis.explain.answers import (
 from robosc.analysis.explain.obstacles import Obstacles
 from robosc.analysis.paths import Path, shortest_path
 from robosc.analysis.system import ExplainedSystem, SynthesizedSystem, whole_state
-from robosc.analysis.wording import join_with_and, name, wanted_states, words
+from robosc.analysis.wording import goal_in_words, join_with_and, name, words
 from robosc.engine import Blocked
 from robosc.model.semantics.edges import edges_from
 from robosc.model.semantics.printing import RobotPrinter
@@ -150,16 +150,16 @@ def find_culprits(system: SynthesizedSystem, end: Codes) -> list[Note]:
 
     If a requirement wants states that are unreachable from there, it comes first.
     """
-    wanted = {requirement: wanted_states(requirement) for requirement in system.violated(end)}
+    goals = {requirement: goal_in_words(requirement) for requirement in system.violated(end)}
     notes = [
         Note(
             requirement,
             requirement.text or "a requirement",
             (f"needs a way to a {way}" if way else "forbids this state",),
         )
-        for requirement, way in wanted.items()
+        for requirement, way in goals.items()
     ]
-    if None in wanted.values():
+    if None in goals.values():
         return notes
     return notes + [
         Note(requirement, requirement.text or "a requirement", (f"forbids the {words(requirement.event)}",))

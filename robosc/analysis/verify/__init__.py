@@ -99,7 +99,7 @@ def validate(models: Models, configuration: Configuration) -> list[Verdict]:
     ]
     verdicts = []
     for questions, target, examine in targets:
-        obstacles = [found for found in target.preconditions(models, configuration) if has_errors([found])]
+        obstacles = [own for own in target.preconditions(models, configuration) if has_errors([own])]
         verdicts += (
             [Verdict(question, Outcome.SKIPPED, "", obstacles[0].message) for question in questions]
             if obstacles

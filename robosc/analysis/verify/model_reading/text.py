@@ -529,11 +529,11 @@ class _TextReading:
         for invariant, within in self.names.definitions(robosc.StateInvariant):
             value = invariant.kind == robosc.InvariantKind.always
             self.claim("the condition of an invariant", invariant.condition, within, value, invariant)
-        for wanted, within in self.names.definitions(robosc.ReachabilityRequirement):
-            self.claim("the reachable condition of a requirement", wanted.condition, within, True, wanted)
+        for required, within in self.names.definitions(robosc.ReachabilityRequirement):
+            self.claim("the reachable condition of a requirement", required.condition, within, True, required)
             # Without `from`, a way to the condition exists in every state.
-            where = ex.BooleanLiteral(value=True) if wanted.premise is None else wanted.premise
-            self.claim("the condition after `from` of a requirement", where, within, True, wanted)
+            where = ex.BooleanLiteral(value=True) if required.premise is None else required.premise
+            self.claim("the condition after `from` of a requirement", where, within, True, required)
         for claimed, within in self.names.definitions(robosc.Property):
             if isinstance(claimed, robosc.InvariantProperty):
                 value = claimed.kind == robosc.InvariantKind.always
