@@ -16,6 +16,7 @@ from robosc.analysis.explain.names import find_event
 from robosc.analysis.supervise import EmptySupervisorError, supervise
 from robosc.analysis.verify import Outcome, Verdict, validate_cif, validate_model, verify_system
 from robosc.base.ros_types import RosTypes
+from robosc.language.cif import read as read_cif
 from robosc.language.configuration import Configuration
 from robosc.language.formatting import format_text
 from robosc.language.hover import describe
@@ -53,6 +54,7 @@ SENTENCES = {
         "test_cif_has_an_annotation",
         "test_verify_refutes_another_annotation",
     ),
+    "CIF import reads it.": ("test_the_written_annotation_is_read_again", "test_names_of_an_annotation_in_cif"),
     "`transform --to cif` warns about tools before version 10.": ("test_older_tools_lead_to_a_warning",),
     "The supervised file holds the guards.": ("test_cif_has_an_annotation",),
     "The words stay names.": ("test_both_words_stay_names",),
@@ -369,6 +371,36 @@ def test_older_tools_lead_to_a_warning(tmp_path: Path, requirement: str, version
     assert done.exit_code == 0
     assert "warning: tools of CIF before version 10 ignore this requirement" in done.output
     assert f"CIF {version}" in done.output
+
+
+def test_the_written_annotation_is_read_again(tmp_path: Path) -> None:
+    (tmp_path / "Rover.cif").write_text(cif.generate(Models(rover(HOME)), Configuration())["Rover.cif"])
+    again = read_cif(tmp_path / "Rover.cif")
+    assert again.findings == []
+    assert states(again.model) == 4
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "@requirement:reachable(away) plant p: {} end",
+        "@@requirement:reachable(p.away) plant p: {} end",
+        "@@requirement:reachable(g.p.away,) @requirement:reachable(p.away, from: p.home) group g: plant p: {} end end",
+        "@requirement:reachable(away) plant def P(): {} end p: P();",
+        "group g: @requirement:reachable(from: true, ^g.p.away) plant p: {} end end",
+    ],
+)
+def test_names_of_an_annotation_in_cif(tmp_path: Path, text: str) -> None:
+    """An annotation resolves its names inside the component. Its supervisor forbids the way to `stuck`."""
+    body = """controllable go, back, leave;
+        location home: initial; marked; edge go goto away; edge leave goto stuck;
+        location away: edge back goto home;
+        location stuck: marked;"""
+    (tmp_path / "p.cif").write_text(text.format(body))
+    reading = read_cif(tmp_path / "p.cif")
+    assert reading.findings == []
+    assert all(required.text.startswith("@") for required in reading.model.reachabilityRequirements)
+    assert states(reading.model) == 2
 
 
 # verify
