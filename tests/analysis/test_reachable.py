@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 from hypothesis import HealthCheck, assume, given, settings
+from pygments.token import Token
 
 import robosc
 from robosc.analysis.explain.as_json import data_of
@@ -17,8 +18,10 @@ from robosc.analysis.supervise import EmptySupervisorError, supervise
 from robosc.analysis.verify import Outcome, Verdict, validate_cif, validate_model, verify_system
 from robosc.base.ros_types import RosTypes
 from robosc.language.cif import read as read_cif
+from robosc.language.completion import proposals
 from robosc.language.configuration import Configuration
 from robosc.language.formatting import format_text
+from robosc.language.highlighting.pygments_lexer import RoboscLexer
 from robosc.language.hover import describe
 from robosc.language.reading import read
 from robosc.language.text import Text
@@ -62,6 +65,8 @@ SENTENCES = {
         "test_checks",
         "test_format",
         "test_hover",
+        "test_highlighting",
+        "test_completion",
         "test_xmi",
         "test_the_second_reading_finds_another_condition",
         "test_the_report_lists_it",
@@ -203,6 +208,27 @@ def test_hover(tmp_path: Path) -> None:
     reading = read(written(tmp_path, HOME))
     shown = describe(reading, reading.base.definitions[-1], RosTypes())
     assert "From every state with `Battery.flat`, the supervised robot can reach a state with `Base.docked`." in shown
+
+
+def test_highlighting() -> None:
+    tokens = list(RoboscLexer().get_tokens(f"robot R {{ {HOME} requirement reachable needs reachable }}"))
+    assert [kind for kind, text in tokens if text == "reachable"] == [Token.Keyword, Token.Name, Token.Name]
+    assert [kind for kind, text in tokens if text == "from"] == [Token.Keyword]
+
+
+@pytest.mark.parametrize(
+    ("before", "word"), [("requirement ", "reachable"), ("requirement reachable Base.docked ", "from")]
+)
+def test_completion(tmp_path: Path, before: str, word: str) -> None:
+    text = ROVER.format(before)
+
+    def reading(content: str):
+        path = tmp_path / "robot.rscd"
+        path.write_text(content, encoding="utf-8")
+        return read(path)
+
+    *_, results = proposals(text, text.rindex(before) + len(before), reading, RosTypes(), list)
+    assert word in [proposal.text for proposal in results]
 
 
 def written(folder: Path, *requirements: str) -> Path:
