@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import strategies as st
 from pygments.token import Token
 
 import robosc
@@ -15,7 +16,9 @@ from robosc.analysis.explain.as_text import Renderer
 from robosc.analysis.explain.explanations import emptiness, explore, possibility
 from robosc.analysis.explain.names import find_event
 from robosc.analysis.supervise import EmptySupervisorError, supervise
+from robosc.analysis.system import GuardedSystem
 from robosc.analysis.verify import Outcome, Verdict, validate_cif, validate_model, verify_system
+from robosc.analysis.verify.properties import goal_reachable
 from robosc.base.ros_types import RosTypes
 from robosc.language.cif import read as read_cif
 from robosc.language.completion import proposals
@@ -30,17 +33,20 @@ from robosc.m2t.models import Models
 from robosc.model import expression as ex
 from robosc.model import sct
 from robosc.model.semantics.walks import copy_tree
-from robosc.synthesis import synthesize
+from robosc.synthesis import synthesize, use_encoding
+from robosc.synthesis.encoding import Encoding
 from robosc.tools.cli import main
+from tests.analysis.verify.explicit import Explicit
 from tests.language.second_edition import errors
 from tests.random_sct import sct_models
 from tests.searching import examples
-from tests.synthesis.oracle import Oracle
+from tests.synthesis.oracle import Oracle, State
 
 SENTENCES = {
     "In every reachable state with the premise, a state with the condition can be reached.": (
         "test_the_supervisor_keeps_the_states_reachable",
         "test_verify_refutes_a_guard_that_strands_the_robot",
+        "test_verify_against_an_explicit_search",
     ),
     "Without a premise, this holds in every reachable state.": ("test_the_supervisor_keeps_the_states_reachable",),
     "As with marking, some values of inputs suffice.": ("test_some_values_of_inputs_suffice",),
@@ -321,13 +327,12 @@ def test_why_empty_names_the_requirement(requirements: list[str], reason: str) -
 
 
 @pytest.mark.slow
-@given(sct_models(requirements=True))
+@given(sct_models(requirements=True, goals=True))
 @settings(
     max_examples=examples(20), deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
 )
 def test_every_explanation_of_random_models_holds(model: sct.SupervisoryControlModel) -> None:
     """Every question has an answer, and leaving out the requirements that help gives the counted states."""
-    assume(model.reachabilityRequirements)
     oracle = Oracle(model)
 
     def look(system):
@@ -465,3 +470,41 @@ def test_the_second_reading_finds_another_condition(feature: str) -> None:
     verdict = validate_model(robot, model)
     assert verdict.outcome is Outcome.REFUTED
     assert "of a requirement (line 23) " in verdict.explanation
+
+
+@pytest.mark.slow
+@given(sct_models(requirements=True, goals=True), st.booleans())
+@settings(
+    max_examples=examples(30), deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
+)
+def test_verify_against_an_explicit_search(model: sct.SupervisoryControlModel, is_complete: bool) -> None:
+    """The supervisor of many models lacks the conditions of synthesis, or does not exist."""
+    supervisor = synthesize(model).supervisor
+    is_complete = is_complete and supervisor is not None
+    events = [event for plant in model.plants for event in plant.events if event.controllable]
+    guards = [sct.EventGuard(event=event, everEnabled=True) for event in events]
+    model.supervisor = supervisor or sct.Supervisor(guards=guards)
+    for guard in () if is_complete else model.supervisor.guards:
+        guard.synthesis = None
+    explicit = Explicit(model)
+    assume(len(explicit.states) < 100)
+
+    def holds(condition: ex.Expression | None, state: State) -> bool:
+        return explicit.oracle.value(condition, state, {})
+
+    def is_stranded(state: State, required: sct.ReachabilityRequirement) -> bool:
+        onwards, pending = {state}, [state]
+        for here in pending:
+            fresh = {after for _, after in explicit.moves(here)} - onwards
+            onwards |= fresh
+            pending += fresh
+        return holds(required.premise, state) and not any(holds(required.condition, after) for after in onwards)
+
+    def look(encoding: Encoding) -> list[Verdict]:
+        system = GuardedSystem(model, encoding)
+        return [goal_reachable(system, required) for required in model.reachabilityRequirements]
+
+    for required, verdict in zip(model.reachabilityRequirements, use_encoding(model, look), strict=True):
+        is_refuted = any(is_stranded(state, required) for state in explicit.states)
+        assert verdict.outcome is (Outcome.REFUTED if is_refuted else Outcome.PROVED)
+        assert not (is_refuted and is_complete)
