@@ -323,7 +323,7 @@ def supervise_only(
     steps = [step for _, step in moves]
     uncontrollable = [step for relation, step in moves if not relation.event.controllable]
     diagrams, initial = encoding.diagrams, encoding.initial
-    goals = [Goal(diagrams.true, encoding.all_marked), *goals]
+    goals = list(goals)
     statistics = diagrams.statistics
     reached = good = reachable(diagrams, steps, initial, diagrams.true)
     bad, alive = good & violating, diagrams.false
@@ -335,7 +335,7 @@ def supervise_only(
         # The states that were alive still are: none needs a removed state to reach a goal.
         if good == alive:
             break
-        alive = keep_alive(diagrams, steps, goals, good)
+        alive = keep_alive(diagrams, steps, [Goal(diagrams.true, encoding.all_marked), *goals], good)
         bad = good & ~alive
         if not bad.satisfiable():
             break
