@@ -5,7 +5,7 @@ import json
 import pytest
 
 import robosc
-from robosc.analysis.explain import Renderer, emptiness, explore, find_event, possibility
+from robosc.analysis.explain import Renderer, data_of, emptiness, explore, find_event, possibility
 from robosc.analysis.supervise import EmptySupervisorError, supervise
 from robosc.base.diagnostics import Diagnostic, as_json, as_sarif, in_order
 
@@ -164,3 +164,24 @@ def test_a_guard_of_a_component_is_named() -> None:
     assert [note.details for note in found.stuck if "Mains" in note.text] == [
         ("its transition on response from `Mains.back` requires `Boom.parked`",)
     ]
+
+
+def test_explanations_name_each_requirement_once() -> None:
+    text = """robot Press {
+      component Ram {
+        outgoing message hit with type: none
+        incoming message rise with type: none
+        incoming message lift with type: none
+        behaviour {
+          initial marked state up { on response from hit goto down }
+          state down { on response from hit on request to rise goto up on request to lift goto up }
+        }
+      }
+      requirement Lock: automaton { initial state locked { on request to rise if Ram.up on request to lift if Ram.up } }
+    }"""
+    model = robosc.to_sct(robosc.load(text=text))
+    answer = explore(model, emptiness)
+    (note,) = answer.blamed
+    assert note.details == ("forbids the request to `Ram.rise`", "forbids the request to `Ram.lift`")
+    (loosening,) = data_of(answer, lambda _: {})["loosenings"]
+    assert loosening["texts"] == ["requirement Lock: automaton"]

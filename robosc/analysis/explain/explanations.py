@@ -148,23 +148,22 @@ def _way(system: SynthesizedSystem, start: Codes, allowed: Diagram) -> tuple[Tra
 def find_culprits(system: SynthesizedSystem, end: Codes) -> list[Note]:
     """Return the invariants that a state violates, else the requirements that forbid something after it.
 
-    If a requirement wants states that are unreachable from there, it comes first.
+    A requirement whose states are unreachable from there comes first. Each requirement of the text has one note.
     """
     goals = {requirement: goal_in_words(requirement) for requirement in system.violated(end)}
-    notes = [
-        Note(
-            requirement,
-            requirement.text or "a requirement",
-            (f"needs a way to a {way}" if way else "forbids this state",),
-        )
-        for requirement, way in goals.items()
+    details: dict[tuple[object, str], tuple[sct.StatedRequirement, dict[str, None]]] = {}
+    reasons: list[tuple[sct.StatedRequirement, str]] = [
+        (requirement, f"needs a way to a {goal}" if goal else "forbids this state")
+        for requirement, goal in goals.items()
     ]
-    if None in goals.values():
-        return notes
-    return notes + [
-        Note(requirement, requirement.text or "a requirement", (f"forbids the {words(requirement.event)}",))
-        for requirement in forbidden_from(system, end)
-    ]
+    if None not in goals.values():
+        forbidding = forbidden_from(system, end)
+        reasons += [(requirement, f"forbids the {words(requirement.event)}") for requirement in forbidding]
+    for requirement, reason in reasons:
+        text = requirement.text or "a requirement"
+        _, known = details.setdefault((requirement.source or requirement, text), (requirement, {}))
+        known[reason] = None
+    return [Note(requirement, text, tuple(known)) for (_, text), (requirement, known) in details.items()]
 
 
 # An event that may never happen

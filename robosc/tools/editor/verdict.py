@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import robosc
 from robosc.analysis.supervise import supervise
-from robosc.analysis.system import format_count
+from robosc.analysis.system import format_count, format_number
 from robosc.base.diagnostics import ModelError, has_errors
 from robosc.model import sct
 from robosc.model.places import place
@@ -52,7 +52,7 @@ def _verdict(path: str, model: sct.SupervisoryControlModel, supervision: Supervi
     synthesis = supervision.synthesis
     states = f"{format_count(synthesis.controlled_states, 'state')} under its supervisor"
     without = synthesis.uncontrolled_states
-    size = states + (f", {without} without requirements" if without is not None else "")
+    size = states + (f", {format_number(without)} without requirements" if without is not None else "")
     faults = [finding.message for finding in supervision.findings if has_errors([finding])]
     requirements = {}
     for weight in synthesis.weights:
