@@ -33,7 +33,7 @@ def declare(reference: rsc.InterfaceTypeReference, interfaces: RosTypes) -> tupl
         message, hint, meant = interfaces.why_unknown(reference.package, reference.rosType, part)
         if part is Section.MESSAGE and interfaces.other_kinds(reference.package, reference.rosType, part.kind):
             return message, OWN_OBJECT
-        return message, Repair(hint, "/".join(meant)) if meant is not None else hint
+        return message, Repair(hint, choices=("/".join(meant),)) if meant is not None else hint
     reference.definition = rsc.ObjectDataType(name=reference.rosType, source=reference.source)
     reference.type = reference.definition
     return None

@@ -9,13 +9,16 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from robosc.base.diagnostics import Related, Repair
 from robosc.base.interruption import checkpoint
+from robosc.base.ros_types.wire import FOLDERS
 from robosc.language.failures import expects_failure
 from robosc.language.interface_types import declare, is_made, link_interface, ros_properties, ros_property
+from robosc.language.ros_constants import constants_of, literal, used_types
 from robosc.language.scopes import File, NameKind, Names, Scope, by_name
+from robosc.language.spellings import NEGATION, folder
 from robosc.language.syntax_messages import BASIC_TYPES, CONSTRUCTS, did_you_mean
 from robosc.model import expression as ex
 from robosc.model import robosc as rsc
-from robosc.model.semantics.communication import RUNNING_WORD
+from robosc.model.semantics.communication import RUNNING_WORD, section_of
 from robosc.model.semantics.expansion import constant_value
 from robosc.model.semantics.failures import FAILURE, FAILURES
 from robosc.model.semantics.naming import enumeration, escape_keyword
@@ -40,6 +43,7 @@ if TYPE_CHECKING:
     from robosc.base.ros_types import RosTypes
     from robosc.language.builder import Name
     from robosc.language.tokens import Token
+    from robosc.model.places import Place
     from robosc.model.semantics.instances import Resolved
 
 _Element = TypeVar("_Element")
@@ -53,6 +57,7 @@ _FUNCTION = (
 )
 _OWN_TEXT = "write its content directly"
 _IMPORT = "import it: "
+_OWN_CONSTANT = "declare a `constant` with the value"
 #: Minimum length of a name for the import hint: shorter names are parts of too many others.
 _SHORTEST = 4
 OWN_MEMBERS = "a component of a library reads only its own members"
@@ -203,10 +208,14 @@ class Linker:
             case rsc.CommunicationType():
                 name = names["interface"]
                 element.interface = self._definition(rsc.Interface, "interface", NameKind.INTERFACE, name)
+                if element.interface is not None:
+                    self._folder(element.interface.source, type(element).__name__.lower(), name)
             case rsc.InterfaceTypeReference():
                 unknown = declare(element, self.interfaces)
                 if unknown is not None:
                     self._report(names["type"], *unknown)
+                else:
+                    self._folder(element.source, section_of(element).kind, names["type"])
             case rsc.ErrorReason():
                 assert self._file.predefined is not None
                 element.enumeration = self._file.predefined.declared[rsc.ComplexDataType][FAILURE]
@@ -215,6 +224,19 @@ class Linker:
                 definition = self._definition(rsc.ComplexDataType, "object or enum", NameKind.DATA_TYPE, name)
                 if definition is not None:
                     element.type = definition
+
+    def _folder(self, source: Place | None, kind: str, name: Name) -> None:
+        """Report a folder in the name of a ROS type, such as `msg`, that is not the one of its kind."""
+        if source is None:
+            return
+        text, span = self._file.text, source.span
+        if source.file is not text.source_file and source.file is not None:
+            text = source.file.parsed.text
+        start, end = text.offset(span.line, span.column), text.offset(span.end_line, span.end_column)
+        written = folder(text.tokens, start, end)
+        if written is not None and written.text != FOLDERS[kind]:
+            message = f"`{written.text}` holds no types of the kind {kind}, expected `{FOLDERS[kind]}`"
+            self._report(name, message, "leave the folder out, or name another type")
 
     def _use(self, element: ex.Located, names: Mapping[str, Name]) -> None:
         match element:
@@ -287,9 +309,25 @@ class Linker:
             self._ambiguous("function", name, [file for file, _ in matches])
         elif matches:
             call.function = matches[0][1]
+        elif name.text == NEGATION and len(call.arguments) == 1:
+            self._negate(call)
         elif not self._file.may_declare(name.text, NameKind.NAMED):
             known = [*functions, *self.scope.usable(rsc.Function), *FUNCTIONS]
             self._missing(name, "there is no function", known, did_you_mean(name.text, known, cutoff=0.6) or _FUNCTION)
+
+    def _negate(self, call: Any) -> None:
+        """Replace `not (x)` by the negation of `x`: no text declares a function of that name."""
+        self._substitute(call, ex.Negation(operand=call.arguments[0], source=call.source))
+
+    def _substitute(self, element: Any, instead: ex.Expression) -> None:
+        """Replace an expression of the model by another one."""
+        around, feature = element.eContainer(), element.eContainmentFeature()
+        values = getattr(around, feature.name)
+        if feature.many:
+            values[values.index(element)] = instead
+        else:
+            setattr(around, feature.name, instead)
+        self._file.references.pop(element)
 
     def _quantified_template(self, quantifier: rsc.InstanceQuantifier, name: Name) -> None:
         own = self._file.declared[rsc.Component]
@@ -474,7 +512,9 @@ class Linker:
         elif qualifies and first.text in (automata := self.automata(access)):
             self._requirement_state(access, automata[first.text], names["item"])
             return
-        elif qualifies and self._value_of(access, first, names["item"]):
+        elif qualifies and (
+            self._value_of(access, first, names["item"]) or self._ros_constant(access, first, names["item"])
+        ):
             return
         elif self.around(access, rsc.EnumDataType) is not None:
             self._in_enum(access, first)
@@ -527,6 +567,35 @@ class Linker:
         elif not self._file.may_declare_within(definition, value.text, NameKind.ENUM_VALUE):
             self._missing(value, f"enum `{definition.name}` has no value", values)
         return True
+
+    def _ros_constant(self, access: rsc.Access, type_name: Name, name: Name) -> bool:
+        """Replace `Type.NAME` by the value of a constant of a ROS type; return whether the text uses such a type.
+
+        Names of the text take precedence.
+        """
+        types = used_types(self._file, type_name.text)
+        if access.segments or not types or self._is_declared(access, type_name.text):
+            return False
+        known = constants_of(types, type_name.text, self.interfaces)
+        by_package = known.get(name.text, {})
+        values = {value for values in by_package.values() for value in values}
+        if len(by_package) > 1:
+            types_having = enumeration(f"`{package}/{type_name.text}`" for package in by_package)
+            self._report(name, f"`{name.text}` is a constant of {types_having}", _OWN_CONSTANT)
+        elif not values:
+            self._missing(name, f"the ROS type `{type_name.text}` has no constant", known)
+        elif len(values) > 1:
+            message = f"`{name.text}` has other values in ROS 1 and in ROS 2"
+            self._report(name, message, _OWN_CONSTANT, rule="interface-type")
+        else:
+            self._substitute(access, literal(values.pop(), access.source))
+        return True
+
+    def _is_declared(self, access: rsc.Access, name: str) -> bool:
+        """Return whether a bare name has an element, other than a component or an object."""
+        own = self.around(access, rsc.Component)
+        members = (self.scope.members(own) if own is not None else None) or {}
+        return name in members or bool(self.scope.find(rsc.NamedExpression, name) or self.scope.values(name))
 
     def parameters(self, element: ex.Located) -> Names:
         """Return the parameters that an expression can read: of its function, and of its enum or template."""
@@ -610,12 +679,14 @@ class Linker:
             )
         elif word is None:
             call = f"{escape_keyword(name.text)}.{RUNNING_WORD}"
-            self._report(name, f"`{name.text}` can be read as `{call}` only", Repair(f"write `{call}`", call))
+            self._report(
+                name, f"`{name.text}` can be read as `{call}` only", Repair(f"write `{call}`", choices=(call,))
+            )
         elif word.text == RUNNING_WORD:
             other = behind[1] if len(behind) > 1 and behind[1] is not None else word
             rest = (self._point_before(other).start, other.end, "")
             message = f"`{escape_keyword(name.text)}.{RUNNING_WORD}` has no members"
-            self._report(other, message, Repair(f"leave `.{other.text}` out", elsewhere=(rest,)))
+            self._report(other, message, Repair(f"leave `.{other.text}` out", elsewhere=(rest,), is_offered=True))
         else:
             repair = did_you_mean(word.text, [RUNNING_WORD], cutoff=0.6)
             message = f"only `{RUNNING_WORD}` of `{name.text}` can be read, not `{word.text}`"

@@ -15,6 +15,7 @@ from robosc.language.builder import Builder
 from robosc.language.grammar import Failure, first_words, is_reserved, parse
 from robosc.language.outline import DECLARED, DEFINITIONS, PROPERTIES, RULES, Block, Brace, Outline
 from robosc.language.scopes import File, NameKind, SkippedRegions
+from robosc.language.spellings import parse_text, usual_spelling
 from robosc.language.syntax_messages import enumerate_expected, hint, misread, quote_token
 from robosc.language.tokens import Kind, Token, too_complex
 
@@ -42,7 +43,7 @@ def parse_file(text: Text) -> File:
 
 
 def _parsed(text: Text) -> File:
-    tree = None if too_complex(text.tokens) else parse(text.content, "Base")
+    tree = None if too_complex(text.tokens) else parse_text(text)[0]
     if tree is None or isinstance(tree, Failure):
         return recover(text)
     builder = Builder(text)
@@ -63,8 +64,9 @@ class _Recovery:
         self._tokens = tokens = text.tokens
         # Comments become blanks. Blanks behind the text are room for missing braces.
         self._content = [character if character == "\n" else " " for character in text.content + " " * 10]
+        usual = usual_spelling(text)
         for token in tokens:
-            self._content[token.start : token.end] = token.text
+            self._content[token.start : token.end] = usual[token.start : token.end]
         self._findings: list[Diagnostic] = []
         self._regions = SkippedRegions()
         self._is_library = tokens[0].text == "library"

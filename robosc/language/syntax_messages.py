@@ -7,7 +7,7 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from robosc.base.diagnostics import Repair
-from robosc.language.grammar import first, following, is_reserved, words_of
+from robosc.language.grammar import first, first_words, following, is_reserved, words_of
 from robosc.language.outline import COMPONENT, DEFINITIONS, RULES
 from robosc.language.tokens import Kind, Token
 from robosc.model.semantics.naming import ROBOSC_QUANTIFIERS, enumeration, escape_keyword
@@ -35,7 +35,18 @@ _FOREIGN = {
     "\N{LEFT DOUBLE QUOTATION MARK}": '"',
     "\N{RIGHT DOUBLE QUOTATION MARK}": '"',
     ";": "",
+    "#": "//",
+    "\N{NO-BREAK SPACE}": " ",
 }
+#: Hints for symbols that have no counterpart.
+_LEFT_OUT = {";": "leave it out: RoboSC has no semicolons", "\N{NO-BREAK SPACE}": "write a common blank"}
+#: Symbols that bind closer than comparisons in other languages.
+_BITWISE = {"&", "|"}
+_COMPARISONS = {"=", "!=", "<", "<=", ">", ">=", "==", "===", "<>", *_BITWISE}
+_ENDS_OF_OPERANDS = (
+    *("and", "or", "&&", "||", "=>", ",", "(", ")", "{", "}", "if", "do", "goto", "needs", "disables"),
+    *first_words("Definition", "ComponentDefinition", "AutomatonDefinition"),
+)
 #: Hints for words of other languages, and for words of RoboSC in a wrong place.
 _CONSTANT = "write `constant name: type = value`"
 _PARAMETER = "write `parameter name: type = value` in the robot, a library or a component"
@@ -76,22 +87,31 @@ _MEANT = {
     "unless": "write `if` and `!` before the condition",
     "var": "write `variable`",
 }
+#: Units of time in other spellings.
+_UNITS = {
+    **dict.fromkeys(("millis", "msec", "msecs", "millisecond", "milliseconds"), "ms"),
+    **dict.fromkeys(("sec", "secs", "second", "seconds"), "s"),
+    **dict.fromkeys(("mins", "minute", "minutes"), "min"),
+}
+#: Words in another spelling, or of another language, each with the only word that it can stand for.
+_SPELLED = {"cancelled": "canceled", "implies": "=>", "topic": "identifier"}
 #: Replacement of such a word that turns the text into the intended construct.
 _WRITTEN = {
     **dict.fromkeys(("const", "let", "val", "define"), "constant"),
     "param": "parameter",
     **dict.fromkeys(("timeout", "timer", "wait", "delay", "sleep"), "after"),
     **dict.fromkeys(("def", "fn", "func", "fun"), "function"),
-    "never": "requirement never",
-    "always": "requirement always",
     "reachable": "property reachable",
     "forall": "all",
     "exists": "any",
     "when": "if",
     "var": "variable",
 }
-#: Hints for keywords of RoboSC that were read as names because their construct is not allowed there.
-CONSTRUCTS = {word: _MEANT[word] for word in (*ROBOSC_QUANTIFIERS, "never", "always", "reachable", "each", "after")}
+#: Hints for words that were read as names: keywords of RoboSC in a wrong place, and literals of Python.
+CONSTRUCTS: dict[str, Repair | str] = {
+    "True": Repair("write `true`", "true"),
+    "False": Repair("write `false`", "false"),
+} | {word: _MEANT[word] for word in (*ROBOSC_QUANTIFIERS, "never", "always", "reachable", "each", "after")}
 #: Names of the basic types in other languages.
 BASIC_TYPES = {
     **dict.fromkeys(("int", "int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "long"), "integer"),
@@ -203,7 +223,8 @@ def _symbol_hint(token: Token, symbol: str, expectations: Collection[str]) -> Re
     """Return the hint for a symbol in the place of another one."""
     if token.text == "->" and "goto" in expectations:
         return Repair("write `goto`, or `=>` for an implication", choices=("goto", "=>"))
-    return Repair(f"write `{symbol}`", symbol)
+    # A list is not what an arrow means.
+    return Repair(f"write `{symbol}`", symbol, is_offered=symbol == "," and token.text != ":")
 
 
 def _is_name(tokens: Tokens, index: int, expectations: Sequence[str]) -> bool:
@@ -248,13 +269,37 @@ def _foreign(tokens: Tokens, index: int) -> Repair:
     The hint replaces a quotation mark together with its counterpart.
     """
     own = _FOREIGN[tokens[index].text]
-    hint_text = f"write `{own}`" if own else "leave it out: RoboSC has no semicolons"
+    hint_text = _LEFT_OUT.get(tokens[index].text) or f"write `{own}`"
     if own != '"':
-        return Repair(hint_text, own)
+        return Repair(hint_text, own, is_offered=_binds_otherwise(tokens, index))
     others = _other_quotes(tokens, index)
     # An unclosed string would reach the end of the line, and a string around a comment would swallow it.
     is_whole = others and not tokens.has_comment(tokens[index].start, others[-1][1])
     return Repair(hint_text, own, elsewhere=others) if is_whole else Repair(hint_text)
+
+
+def _binds_otherwise(tokens: Tokens, index: int) -> bool:
+    """Return whether a symbol may mean something else in its own language: `a == b == c`, `a & b == c`, `[a; -b]`."""
+    if tokens[index].text in _BITWISE:
+        return True
+    if tokens[index].text == ";":  # The next value may continue the one before it: `[a; -b]`.
+        after = tokens[index + 1]
+        return after.kind is Kind.SYMBOL and after.text != "}"
+    return tokens[index].text in {"==", "==="} and any(
+        _has_comparison(tokens, index, direction) for direction in (-1, 1)
+    )
+
+
+def _has_comparison(tokens: Tokens, index: int, direction: int) -> bool:
+    """Return whether a comparison or bitwise symbol is beside the one at `index`, in the same operand."""
+    at = index + direction
+    while 0 < at < len(tokens) - 1:
+        if tokens[at].text in _COMPARISONS:
+            return True
+        if tokens[at].is_keyword(*_ENDS_OF_OPERANDS):
+            return False
+        at += direction
+    return False
 
 
 def _before(token: Token, hint_text: str, text: str) -> Repair:
@@ -284,6 +329,10 @@ def _both_sides(tokens: Tokens, index: int) -> Repair:
     hint_text = "a number has digits on both sides of its point, such as `0.5` or `1.0`"
     point = next((at for at in (index, index - 1) if tokens[at].text == "."), index)
     before, token, after = tokens[point - 1], tokens[point], tokens[point + 1]
+    if ".." in {before.text, after.text}:
+        return Repair(
+            "a range has two points, such as `0..5`", elsewhere=((token.start, token.end, ""),), is_offered=True
+        )
     is_after = before.kind is Kind.NUMBER and before.end == token.start
     if is_after and not (after.kind is Kind.NUMBER and after.start == token.end):
         return Repair(hint_text, elsewhere=((token.end, token.end, "0"),))
@@ -298,13 +347,16 @@ def _without_exponent(tokens: Tokens, index: int) -> Repair:
     is_signed = token.text[-1] in "eE" and token.end == sign.start and sign.end == digits.start
     text, end = (token.text + sign.text + digits.text, digits.end) if is_signed else (token.text, token.end)
     try:
-        written_out = f"{Decimal(text):f}"
+        number = Decimal(text)
     except InvalidOperation:
         return Repair(hint_text)
-    return Repair(hint_text, elsewhere=((token.start, end, written_out),) if len(written_out) < _LONGEST_NUMBER else ())
+    is_short = len(text) < _LONGEST_NUMBER and abs(number.adjusted()) < _LONGEST_NUMBER
+    return Repair(hint_text, elsewhere=((token.start, end, f"{number:f}"),) if is_short else ())
 
 
-def _timed_hint(token: Token, before: Token, expectations: Sequence[str]) -> str | None:
+def _timed_hint(token: Token, before: Token, expectations: Sequence[str]) -> Repair | str | None:
+    if token.text in _UNITS and _UNITS[token.text] in expectations:
+        return Repair(f"write `{_UNITS[token.text]}`", _UNITS[token.text])
     if Kind.NUMBER in {token.kind, before.kind} and "do" not in expectations:
         return "write a number, a space and a unit, `ms`, `s` or `min`: `after 3.0 s`"
     if token.text == "if":
@@ -315,6 +367,12 @@ def _timed_hint(token: Token, before: Token, expectations: Sequence[str]) -> str
 def _statement_hint(tokens: Tokens, index: int, expectations: Sequence[str], block: Block) -> Repair | str | None:
     """Return the hint that depends on the kind of definition around the token."""
     token, before, starter = tokens[index], tokens[index - 1], tokens[block.first]
+    if _SPELLED.get(token.text) in expectations:
+        return Repair(f"write `{_SPELLED[token.text]}`", _SPELLED[token.text])
+    if token.text == "[" and before.is_keyword("integer", "double"):
+        return _range_hint(tokens, index)
+    if token.text == "if" and "on" in expectations:
+        return _condition_first(tokens, index)
     if starter.is_keyword("after"):
         return _timed_hint(token, before, expectations)
     if starter.is_keyword("incoming", "outgoing", "service", "action"):
@@ -322,12 +380,53 @@ def _statement_hint(tokens: Tokens, index: int, expectations: Sequence[str], blo
     if starter.is_keyword("provide") and token.text == ":":
         return "write the properties of an object in braces"
     if starter.is_keyword("requirement", "property"):
-        return _requirement_hint(token, before, expectations)
+        return _set_hint(tokens, index, block) or _requirement_hint(token, before, expectations)
     if starter.is_keyword("component") and "is" in expectations and token.text in {"=", ":"}:
         return Repair(_TEMPLATE, "is" if tokens[index - 1].end < token.start else " is")
     if starter.is_keyword("function") and token.text == "{" and {"=", "=(?!>)"} & set(expectations):
         return "write `=` and one expression instead of braces"
     return None
+
+
+def _range_hint(tokens: Tokens, index: int) -> Repair:
+    """Return the hint for a range in brackets."""
+    closing = index + 1
+    while closing < len(tokens) and tokens[closing].text not in {"[", "]", "{", "}"}:
+        closing += 1
+    is_closed = tokens[closing].text == "]"
+    ends = ((tokens[closing].start, tokens[closing].end, ")"),) if is_closed else ()
+    return Repair("write parentheses around the range", "(" if is_closed else None, elsewhere=ends)
+
+
+def _condition_first(tokens: Tokens, index: int) -> Repair:
+    """Return the hint for a condition before `on`, which follows the event."""
+    hint_text = "write the condition after the event, as in `on … if … do … goto …`"
+    event = index + 1
+    while event < len(tokens) and not tokens[event].is_keyword("on", "{", "}", "goto"):
+        event += 1
+    if not tokens[event].is_keyword("on") or tokens.has_comment(tokens[index].start, tokens[event].start):
+        return Repair(hint_text)
+    name = event + 3
+    while tokens[name + 1].text == ".":
+        name += 2
+    condition = " ".join(tokens[at].text for at in range(index, event))
+    moved = (
+        (tokens[index].start, tokens[event].start, ""),
+        (tokens[name].end, tokens[name].end, f" {condition}"),
+    )
+    return Repair(hint_text, elsewhere=moved, is_offered=True)
+
+
+def _set_hint(tokens: Tokens, index: int, block: Block) -> Repair | None:
+    """Return the hint for several communications without braces."""
+    needs = next((at for at in range(index, block.after) if tokens[at].is_keyword("needs")), None)
+    if tokens[index].text != "," or needs is None:
+        return None
+    start = index - 1
+    while tokens[start - 1].text == ".":
+        start -= 2
+    around = ((tokens[start].start, tokens[start].start, "{ "), (tokens[needs - 1].end, tokens[needs - 1].end, " }"))
+    return Repair("write braces around several communications", elsewhere=around)
 
 
 def _order_hint(tokens: Tokens, index: int, expectations: Sequence[str]) -> Repair | str | None:
@@ -376,10 +475,17 @@ def _construct(word: Token) -> Repair | str:
     """Return the hint for a misused word, with an edit if a single word replaces it."""
     if word.text == "not":
         return Repair(_MEANT["not"], elsewhere=((word.start, word.end, "!"),))
+    if word.text in {"never", "always"}:
+        # A requirement restricts the robot, a property does not.
+        return Repair(_INVARIANT, choices=(f"requirement {word.text}", f"property {word.text}"))
     text = _WRITTEN.get(word.text)
     if text is None:
         return _MEANT[word.text]
-    return Repair(_MEANT[word.text], elsewhere=((word.start, word.end, text),))
+    if word.text == "when" and word.is_first:
+        return Repair(_CONDITION, choices=("if", "transition if"))
+    # Other languages declare variables with `let`. A pause in a transition is no transition of its own.
+    is_offered = word.text in {"let", "val"} or text == "after"
+    return Repair(_MEANT[word.text], elsewhere=((word.start, word.end, text),), is_offered=is_offered)
 
 
 def _word_hint(tokens: Tokens, index: int, expectations: Sequence[str], block: Block) -> Repair | str | None:
@@ -406,10 +512,11 @@ def _word_hint(tokens: Tokens, index: int, expectations: Sequence[str], block: B
 def keyword_hint(word: str, close: str) -> Repair | str:
     """Return the hint for a word similar to a keyword.
 
-    If the word begins or ends with the keyword, the hint is a missing blank.
+    If the word begins or ends with the keyword, the hint is a missing blank. A word is never replaced without a choice:
+    the closest keyword of `with` may be `without`.
     """
     if word.startswith(close):
         return f"is a space missing after `{close}`?"
     if word.endswith(close):
         return f"is a space missing before `{close}`?"
-    return Repair(f"did you mean `{close}`?", close)
+    return offer_name(close)

@@ -196,7 +196,7 @@ class _Depth:
             self._around.append((self._outside, self._bodies))
             self._outside += self._signs + self._bodies + 1
             self._signs = self._bodies = 0
-        elif token.is_keyword("!", "-"):
+        elif token.is_keyword("!", "-", "not"):
             self._signs += 1
         else:
             self._signs = 0

@@ -103,9 +103,10 @@ def _field(measured: _Measured | None, field: rsc.ObjectProperty | None, ros_typ
     package, name = measured.wire.package, measured.wire.name
     for distribution in ros_types.distributions:
         try:
-            wire = (distribution.fields(package, name, measured.section) or {}).get(field.name)
+            fields = distribution.fields(package, name, measured.section)
         except DefinitionError:
             continue
+        wire = fields.get(field.name) if fields is not None else None
         while isinstance(wire, Sequence):
             wire = wire.element
         if wire is not None:

@@ -353,9 +353,13 @@ class Encoding:
             case "abs":
                 other = arithmetic.negate(value)
                 return arithmetic.choose(arithmetic.less(value, other), other, value)
-        [other] = others
-        least, most = (value, other) if function == "min" else (other, value)
-        return arithmetic.choose(arithmetic.less(least, most), value, other)
+            case "min":
+                [other] = others
+                return arithmetic.choose(arithmetic.less(value, other), value, other)
+            case "max":
+                [other] = others
+                return arithmetic.choose(arithmetic.less(other, value), value, other)
+        raise ValueError(f"no relation for `{function}`")
 
     def _divided(self, value: Vector, divisor: Vector) -> tuple[Vector, Vector]:
         """Divide a value by a positive constant; return the quotient and the remainder.

@@ -131,7 +131,6 @@ FAULTS = [
     ("{move, turn} needs", "{move, turn needs", "needs", "expected `,` or `}`"),
     ("and Scanner.driving", "and", "", "expected an expression"),
     ("and Scanner.driving", "and (Scanner.driving", "", "expected an operator or `)`"),
-    ("and Scanner.driving", "and not Scanner.driving", "Scanner", "write `!` for `not`"),
     ("and Scanner.driving", "-> Scanner.driving", "->", "write `=>`"),
     ("and Scanner.driving", "and state", "state", "write `^state`"),
     ("disables reset", "disable reset", "disable", "did you mean `disables`?"),
@@ -396,7 +395,10 @@ FOREIGN = [
         "robot R { component C { behaviour { initial marked state s { transition if all A A.s } } } }",
         "write `all`, `any`",
     ),
-    ("robot R { component C { behaviour { initial marked state s { transition if not x } } } }", "write `!` for `not`"),
+    (
+        "robot R { constant not: boolean = true component C { behaviour { state s { transition if not x } } } }",
+        "write `!` for `not`",
+    ),
     (
         "robot R { component C { behaviour { initial marked state s { transition if x % 2 = 0 } } } }",
         "write `mod(a, b)`",

@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING
 
 from robosc.base.files.resources import locate
 from robosc.base.ros_types.folders import MOST_FOLDERS, Share, Workspace
-from robosc.base.ros_types.wire import FOLDERS, DefinitionError, Fields, NestedType, Section, Sequence, WireType
+from robosc.base.ros_types.wire import FOLDERS, DefinitionError, Fields, NestedType, Section, Sequence, Value, WireType
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
     from os import PathLike
 
     from robosc.base.ros_types.rosbags_types import ShippedTypes
@@ -152,6 +152,18 @@ class RosTypes:
             f"only the first {MOST_FOLDERS:,} folders below `{large}` were searched: "
             "use --interface-path with a folder nearer to the package"
         )
+
+    def constants(self, package: str, name: str, kind: str) -> list[Mapping[str, Value]]:
+        """Return the constants of each section of a type of a kind, by name, in the ROS versions that have the type."""
+        by_section: list[Mapping[str, Value]] = []
+        for distribution in self.distributions:
+            for section in Section:
+                try:
+                    fields = distribution.fields(package, name, section) if section.kind == kind else None
+                except DefinitionError:
+                    continue
+                by_section += [fields.constants] if fields is not None else []
+        return by_section
 
     def other_kinds(self, package: str, name: str, kind: str) -> list[str]:
         """Return the other kinds (`service`, `action`) that have a type of this name."""

@@ -35,8 +35,8 @@ _PLACEHOLDER = "structure_needs_at_least_one_member"
 _STORES = {"ROS 1": Stores.ROS1_NOETIC, "ROS 2": Stores.ROS2_JAZZY}
 #: ROS 1's own types for time, which `rosbags` describes with the field names of ROS 2.
 _TIMES: dict[str, Fields] = {
-    "builtin_interfaces/msg/Time": {"sec": Basic("uint32"), "nsec": Basic("uint32")},
-    "builtin_interfaces/msg/Duration": {"sec": Basic("int32"), "nsec": Basic("int32")},
+    "builtin_interfaces/msg/Time": Fields({"sec": Basic("uint32"), "nsec": Basic("uint32")}),
+    "builtin_interfaces/msg/Duration": Fields({"sec": Basic("int32"), "nsec": Basic("int32")}),
 }
 #: The defaults in ROS 2's definitions of shipped types, which `rosbags` drops; ROS 1 has none.
 _DEFAULTS: dict[str, dict[str, Value]] = {
@@ -63,7 +63,7 @@ def _section(text: str, package: str) -> Fields:
     try:
         (message,) = MSGParser(f"MSG: {name}\n{text}\n").specification()
         defaults = [field.value for field in message.fields]
-        return _fields(make_typesdict([message])[name][1], defaults)
+        return _fields(*make_typesdict([message])[name], defaults)
     except TypesysError:
         for line in text.splitlines():
             try:
@@ -73,12 +73,16 @@ def _section(text: str, package: str) -> Fields:
         raise DefinitionError("it is not a list of fields") from None
 
 
-def _fields(described: list[tuple[str, Any]], defaults: Iterable[Any]) -> Fields:
-    return {
+def _fields(
+    constants: Iterable[tuple[str, str, Any]], described: Iterable[tuple[str, Any]], defaults: Iterable[Any]
+) -> Fields:
+    fields = {
         name: _wire_type(description, default)
         for (name, description), default in zip(described, defaults, strict=True)
         if name != _PLACEHOLDER
     }
+    values = {name: _value(kind, value) for name, kind, value in constants}
+    return Fields(fields, {name: value for name, value in values.items() if value is not None})
 
 
 def _wire_type(description: tuple[Nodetype, Any], default: Any = None) -> WireType:
@@ -132,8 +136,8 @@ class ShippedTypes:
         if section is not Section.MESSAGE or key not in self._described:
             return None
         if key not in self._types:
-            described, defaults = self._described[key][1], self._defaults.get(key, {})
-            self._types[key] = _fields(described, [defaults.get(field) for field, _ in described])
+            (constants, described), defaults = self._described[key], self._defaults.get(key, {})
+            self._types[key] = _fields(constants, described, [defaults.get(field) for field, _ in described])
         return self._types[key]
 
     def names(self, package: str, kind: str) -> list[str]:

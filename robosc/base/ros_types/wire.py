@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum
-from typing import NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 
 class DefinitionError(ValueError):
@@ -118,5 +120,12 @@ class NestedType:
 
 
 WireType: TypeAlias = Basic | Sequence | NestedType
-#: The fields of one section, in the order of its definition.
-Fields: TypeAlias = Mapping[str, WireType]
+
+
+class Fields(dict[str, WireType]):
+    """The fields of one section, in the order of its definition, and its `constants`."""
+
+    def __init__(self, fields: Mapping[str, WireType], constants: Mapping[str, Value] | None = None) -> None:
+        """Take fields and constants by name."""
+        super().__init__(fields)
+        self.constants = dict(constants or {})

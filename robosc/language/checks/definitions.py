@@ -173,11 +173,16 @@ def _outermost(base: Text) -> Iterator[rsc.DataType | None]:
     for definition in base.definitions:
         if isinstance(definition, rsc.EnumDataType):
             yield definition.type
+            yield from (parameter.type for parameter in definition.parameters)
         elif isinstance(definition, rsc.ObjectDataType):
             yield from (owner.type for owner in definition.properties)
     for communication in communications(base):
         yield from (declared for _, declared in carrying_events(communication))
     yield from (variable.type for variable in variables(base))
+    yield from (constant.type for constant in statements(rsc.Constant, base))
     yield from (parameter.type for parameter in statements(rsc.Parameter, base))
+    yield from (function.type for function in statements(rsc.Function, base))
+    for function in statements(rsc.Function, base):
+        yield from (parameter.type for parameter in function.parameters)
     for component in of_kind(rsc.Component, base.definitions):
         yield from (parameter.type for parameter in component.parameters)

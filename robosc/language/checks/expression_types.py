@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from robosc.language.checks.edits import Choice, Replacement
 from robosc.language.checks.libraries import instances
 from robosc.language.checks.rule import Finding
-from robosc.language.checks.type_repairs import equality_repair, repair
+from robosc.language.checks.type_repairs import equality_repair, negated_comparison, repair
 from robosc.model import expression as ex
 from robosc.model import robosc as rsc
 from robosc.model.semantics.naming import escape_keyword
@@ -194,11 +194,13 @@ class ExpressionCheck:
             what = "argument" if row.parameters else "operand"
             for operand, actual in zip(operands(operator), types, strict=True):
                 if operand is not None and actual != UNKNOWN and not (actual == expected if expected else fits(actual)):
-                    is_array = row.rule in _FITTING
+                    mended = (
+                        "write the name of an array there" if row.rule in _FITTING else negated_comparison(operator)
+                    )
                     self.report(
                         operand,
                         f"an {what} of `{row.symbol}` must be {expected or names_wanted}, found {actual}",
-                        "write the name of an array there" if is_array else repair(operand, actual, expected or DOUBLE),
+                        mended or repair(operand, actual, expected or DOUBLE),
                     )
         return operator_type(row, types)
 

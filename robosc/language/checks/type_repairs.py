@@ -6,11 +6,12 @@ from typing import TYPE_CHECKING
 
 from robosc.base.diagnostics import Repair
 from robosc.language.checks.definitions import component_of
-from robosc.language.checks.edits import Choice, Insertion, Replacement, wrap
+from robosc.language.checks.edits import Choice, Insertion, Replacement, Together, wrap
 from robosc.model import expression as ex
 from robosc.model import robosc as rsc
 from robosc.model.semantics.communication import data_type, event_of
 from robosc.model.semantics.naming import escape_keyword
+from robosc.model.semantics.operators import COMPARISONS
 from robosc.model.semantics.printing import RoboscPrinter
 from robosc.model.semantics.typing import (
     BOOLEAN,
@@ -25,11 +26,12 @@ from robosc.model.semantics.typing import (
     Type,
     declared_type,
 )
+from robosc.model.semantics.walks import parts
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from robosc.language.checks.edits import Hint, Together
+    from robosc.language.checks.edits import Hint
 
 #: Placeholder in a hint for text that the user writes.
 _GAP = "…"
@@ -89,7 +91,7 @@ def literal_repair(expression: ex.Expression, actual: Type, expected: Type) -> R
         case ex.IntegerLiteral() | ex.DoubleLiteral(), BasicType.STRING:
             offer = f'"{sign}{inner.value}"'  # the number may have been spelled otherwise, such as `1.10`
         case ex.BooleanLiteral(), BasicType.STRING:
-            text = f'"{str(inner.value).lower()}"'
+            offer = f'"{str(inner.value).lower()}"'  # the text may be spelled otherwise, such as `"on"`
         case ex.IntegerLiteral(), BasicType.BOOLEAN if not sign and inner.value in {0, 1}:
             offer = str(bool(inner.value)).lower()  # `x = 0 or 1` means another comparison
         case ex.StringLiteral(), BasicType.BOOLEAN if inner.value in {"true", "false"}:
@@ -108,6 +110,10 @@ def equality_repair(operator: ex.Equation | ex.Inequation, left: Type, right: Ty
     sides = ((operator.right, right, left), (operator.left, left, right))
     for expression, actual, expected in sides:
         literal = literal_repair(expression, actual, expected)
+        # In other languages `/` divides integers, with another result.
+        if isinstance(literal, Repair) and any(isinstance(part, ex.Division) for part in parts(operator)):
+            hint = f"{literal.hint}: `/` is a division of doubles"
+            return expression, Replacement(hint, str(literal.text), expression, is_choice=True)
         if literal:
             return expression, literal
     for expression, actual, expected in sides:
@@ -119,6 +125,15 @@ def equality_repair(operator: ex.Equation | ex.Inequation, left: Type, right: Ty
             hint_text = "multiply the integer by `1.0`, or compare by `<`, `<=`, `>` or `>=`"
             return operator, _around(hint_text, whole, "", " * 1.0")
     return operator, f"compare {left} with {left}, or {right} with {right}"
+
+
+def negated_comparison(operator: ex.Expression) -> Hint | None:
+    """Return the repair of `!a = b` or `!a < b`, which negates `a` only; None for another operator."""
+    around = operator.eContainer()
+    if not isinstance(operator, ex.Negation) or not isinstance(around, COMPARISONS) or around.left is not operator:
+        return None
+    whole = (Insertion("", "(", operator.operand), Insertion("", ")", around.right, behind=True))
+    return Together("write parentheses around the comparison, such as `not (a = b)`", whole, is_choice=True)
 
 
 def _in_place(expression: ex.Expression, names: Iterable[str]) -> tuple[Replacement, ...]:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from robosc.language.builder import Builder
 from robosc.language.formatting.documents import render
 from robosc.language.formatting.layout import layout
-from robosc.language.grammar import Failure, parse
+from robosc.language.grammar import Failure
 from robosc.language.recovery import recover
+from robosc.language.spellings import parse_text
 from robosc.language.tokens import Tokens, too_complex
 
 if TYPE_CHECKING:
@@ -19,20 +21,27 @@ if TYPE_CHECKING:
 def format_text(text: Text) -> tuple[str | None, list[Diagnostic]]:
     """Return a robot or library in the canonical layout, and the findings of the rule `syntax`.
 
-    If there are findings, the text is None. Names are not looked up. The words stay the same, and so do the comments,
-    except for blanks at the start and end of their lines. A text in the canonical layout does not change.
+    If there are findings, the text is None. Names are not looked up. The words stay the same, except for other
+    spellings, and so do the comments, except for blanks at the start and end of their lines. A text in the canonical
+    layout does not change.
     """
-    tree = None if too_complex(text.tokens) else parse(text.content, "Base")
+    formatted, _, findings = _formatted(text)
+    return formatted, findings
+
+
+def _formatted(text: Text) -> tuple[str | None, str, list[Diagnostic]]:
+    """Return the formatted text, the text in the usual spelling, and the findings."""
+    tree, content = (None, "") if too_complex(text.tokens) else parse_text(text)
     if tree is None or isinstance(tree, Failure):
-        return None, recover(text).findings
+        return None, content, recover(text).findings
     builder = Builder(text)
     builder.build(tree)
     if builder.findings:
-        return None, builder.findings
-    formatted = render(layout(text.content, tree))
-    if [word.text for word in text.tokens] != [word.text for word in Tokens(formatted)]:
+        return None, content, builder.findings
+    formatted = render(layout(content, tree))
+    if [word.text for word in Tokens(content)] != [word.text for word in Tokens(formatted)]:
         raise AssertionError(f"{text.file}: the layout changed the words")
-    return formatted, []
+    return formatted, content, []
 
 
 def format_edits(text: Text, start: int = 0, end: int | None = None) -> list[tuple[int, int, str]]:
@@ -40,11 +49,11 @@ def format_edits(text: Text, start: int = 0, end: int | None = None) -> list[tup
 
     Empty if the text has syntax errors or the range has the canonical layout already.
     """
-    formatted, _ = format_text(text)
+    formatted, usual, _ = _formatted(text)
     if formatted is None:
         return []
     end = len(text.content) if end is None else end
-    before, after = _gaps(text.content), _gaps(formatted)
+    before, after = _pieces(usual), _pieces(formatted)
     return [
         (first, last, formatted[new_first:new_last])
         for (first, last), (new_first, new_last) in zip(before, after, strict=True)
@@ -52,8 +61,7 @@ def format_edits(text: Text, start: int = 0, end: int | None = None) -> list[tup
     ]
 
 
-def _gaps(content: str) -> list[tuple[int, int]]:
-    """Return the ranges before, between and behind the words of a text."""
-    words = list(Tokens(content))
-    starts, ends = [word.start for word in words], [word.end for word in words]
-    return list(zip([0, *ends], [*starts, len(content)], strict=True))
+def _pieces(content: str) -> list[tuple[int, int]]:
+    """Return the ranges of the words of a text, and those before, between and behind them."""
+    ends = [place for word in Tokens(content) for place in (word.start, word.end)]
+    return list(pairwise([0, *ends, len(content)]))

@@ -244,6 +244,10 @@ def _product(expression: ex.Multiplication, left: _Pieces, right: _Pieces) -> _P
     return pieces
 
 
+#: Comparisons by which functions choose between two values.
+_CHOOSING = {"abs": ex.LessThan, "min": ex.LessThan, "max": ex.GreaterThan}
+
+
 def _called(call: ex.FunctionCall, first: _Pieces, last: _Pieces) -> _Pieces:
     """Lower a function of its first and its last argument. All but `mod` choose between values."""
     if call.function == "mod":
@@ -253,7 +257,7 @@ def _called(call: ex.FunctionCall, first: _Pieces, last: _Pieces) -> _Pieces:
     else:  # Put the shorter one first: its alternatives repeat the condition.
         first, other = sorted((first, last), key=len, reverse=True)
         difference = _sum(call, other, _scaled(first, -1))
-    chosen = _compared(ex.GreaterThan if call.function == "max" else ex.LessThan, difference, Linear(0), call)
+    chosen = _compared(_CHOOSING[call.function], difference, Linear(0), call)
     return _choice(call, chosen, other, first)
 
 

@@ -156,9 +156,11 @@ class Terms:
             case "abs", ():
                 below = self.operation(ex.LessThan, value, self.constant(int, 0))
                 return self.operation(ex.Conditional, below, self.operation(ex.UnaryMinus, value), value)
-        [other] = others
-        better = self.operation(ex.LessThan if function == "min" else ex.GreaterThan, other, value)
-        return self.operation(ex.Conditional, better, other, value)
+            case "min", (other,):
+                return self.operation(ex.Conditional, self.operation(ex.LessThan, other, value), other, value)
+            case "max", (other,):
+                return self.operation(ex.Conditional, self.operation(ex.GreaterThan, other, value), other, value)
+        raise ValueError(f"no term for `{function}`")
 
     def modulo(self, value: Term, divisor: Term) -> Term:
         """Return `value mod divisor`.

@@ -141,13 +141,18 @@ class Replay:
         return self._keep(here, moment)
 
     def let_go_by(self, seconds: float) -> list[Moment]:
-        """Let time pass; timers that expire on the way fire at their time."""
+        """Let time pass; timers that expire on the way fire at their time. A wait of the script keeps its end."""
         self._future.clear()
-        here = self._here
-        self._until = self.timers.now + _milliseconds(seconds)
-        moments = [self._keep(here, self._wait(self._until))]
-        while self._until is not None:
-            moments.append(self._keep(self._here, self._wait(self._until)))
+        scripted, self._until = self._until, self.timers.now + _milliseconds(seconds)
+        moments: list[Moment] = []
+        while not moments or moments[-1].event != WAIT:
+            assert self._until is not None
+            here, moment = self._here, self._wait(self._until)
+            if moment.event == WAIT and scripted is not None:
+                is_over = scripted <= self.timers.now
+                self._next += is_over
+                self._until = None if is_over else scripted
+            moments.append(self._keep(here, moment))
         return moments
 
     def _scripted(self, steps: Sequence[ScriptStep]) -> Moment | None:

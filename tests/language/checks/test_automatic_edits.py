@@ -197,7 +197,9 @@ def test_only_the_clause_is_left_out() -> None:
         "boolean", "boolean /* of the laser */ , /* no */ send: change // at once"
     )
     after = content.replace("*/ , /*", "*/ /*").replace(" send: change //", " //")
-    assert fixed(content) == after
+    found = checked(content)
+    (offered,) = [way for finding in found.findings for way in finding.alternatives if "send: change" in way.title]
+    assert found.reading.file.text.after(offered.edits) == after
 
 
 @pytest.mark.parametrize("comment", ["/* state moving of old */", "// state moving\n"])
@@ -246,6 +248,93 @@ def test_a_name_is_offered_and_never_replaced(name: str, close: str) -> None:
     assert finding.edits == ()
     assert [way.title for way in finding.alternatives] == [f"write `{close}`"]
     assert fixed(content) == content
+
+
+TIME = "write `after 3.0 s goto state` in a state, or `after 500 ms without message goto state` for a silent topic"
+CONDITION = "write the condition after the event, as in `on … if … do … goto …`"
+OFFERED = """robot Cart {
+  parameter gain: double(0.5..9.5) = 1.0
+  component Base {
+    incoming message go with type: none
+    outgoing message scan with type: boolean
+    service check with request: std_srvs/SetBool, response: std_srvs/SetBool
+    behaviour {
+      variable near: boolean
+      variable load: integer(0..3)
+      initial marked state idle {
+        on response from scan do near := value goto moving
+        on request to check
+        on response from check
+        on error from check do load := 1
+      }
+      state moving {
+        on request to go
+        on response from scan if near = value goto idle
+        after 5.0 s without scan goto idle
+      }
+    }
+  }
+  requirement go needs Base.near or Base.load = 2
+  requirement always Base.idle or Base.moving
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "offers"),
+    [
+        ("without scan", "with scan", ["without"]),
+        ("go needs", "go neednt", ["needs"]),
+        ("0.5..9.5", "0.5...9.5", ["a range has two points, such as `0..5`"]),
+        ("Base.near or", "Base.check or", ["check.running"]),
+        ("on request to go", "on error from go", ["write `on request to go`", "leave the transition out"]),
+        ("Base.load = 2", "Base.load / 2 = 1", ["write `1.0`: `/` is a division of doubles"]),
+        ("near = value", "near == value == true", ["="]),
+        ("near = value", "near & value == true", ["and"]),
+        ("requirement always", "always", ["requirement always", "property always"]),
+        ("near = value", "near == value\n == true", ["="]),
+        ("Base.near or Base.load = 2", "Base.near; (Base.load = 2)", ["leave it out: RoboSC has no semicolons"]),
+        ("scan do near := value goto moving", "scan timeout 3 s goto moving", [TIME]),
+        ("on request to check", "when near goto moving", ["if", "transition if"]),
+        ("on response from scan do", "if near on response from scan do", [CONDITION]),
+        ("requirement go", "requirement { go => check }", [","]),
+    ],
+)
+def test_an_edit_that_may_mean_something_else_is_only_offered(old: str, new: str, offers: list[str]) -> None:
+    assert [finding for finding in checked(OFFERED).findings if finding.severity is Severity.ERROR] == []
+    content = OFFERED.replace(old, new)
+    assert content != OFFERED
+    assert fixed(content) == content
+    titles = [way.title for finding in checked(content).findings for way in finding.alternatives]
+    assert [offer for offer in offers if offer not in titles and f"write `{offer}`" not in titles] == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("near = value", "near == value"),
+        ("Base.near or", "Base.near ||"),
+        ("or Base.load = 2", "or Base.load = 2;"),
+        ("or Base.load = 2", "or True"),
+        ("always Base.idle or Base.moving", "always Base.idle implies Base.moving"),
+        ("integer(0..3)", "integer[0..3]"),
+        ("5.0 s", "5.0 seconds"),
+        ("5.0 s", "5.0 minutes"),
+        ("go with type", 'go with topic: "/go", type'),
+        ("requirement go needs", "requirement go, check needs"),
+        ("variable near", "variable\N{NO-BREAK SPACE}near"),
+        ("on error from check", "on cancelled from drive"),
+    ],
+)
+def test_a_word_or_symbol_with_one_meaning_is_mended(old: str, new: str) -> None:
+    drive = "    action drive with request: none, response: none, feedback: none\n    behaviour"
+    base = OFFERED.replace("    behaviour", drive) if "drive" in new else OFFERED
+    usual = {"||": "or", "True": "true", "implies": "=>", "[": "(", "]": ")", "seconds": "s", "minutes": "min"}
+    usual |= {"topic": "identifier", "go, check": "{ go, check }", "cancelled": "canceled", "==": "=", ";": ""}
+    mended = new.replace("\N{NO-BREAK SPACE}", " ")
+    for word, other in usual.items():
+        mended = mended.replace(word, other)
+    assert fixed(base.replace(old, new)) == base.replace(old, mended)
 
 
 def test_an_arrow_is_no_implication_where_a_state_may_follow() -> None:
@@ -364,9 +453,9 @@ def test_a_syntax_error_that_becomes_another_one_stays() -> None:
 
 
 def test_errors_of_one_item_of_which_one_hides_the_next() -> None:
-    content = DOORS.replace("needs Door.eager", "needs not Door.eager or not Door.locked")
-    assert fixed(content) == content.replace("not ", "! ")
-    hopeless = DOORS.replace("needs Door.eager", "needs not Door.eager or not Door.{")
+    content = DOORS.replace("needs Door.eager", "needs Door.eager || Door.locked && Door.eager")
+    assert fixed(content) == content.replace("||", "or").replace("&&", "and")
+    hopeless = DOORS.replace("needs Door.eager", "needs Door.eager || Door.locked && Door.{")
     assert fixed(hopeless) == hopeless
 
 

@@ -81,6 +81,12 @@ TEXTS = {
   requirement m needs !C.s
 }
 """,
+    "spellings": """robot R {
+  constant not: boolean = true
+  component C { service s with request: std_srvs/msg/SetBool, response: std_srvs/SetBool }
+  requirement s needs not x
+}
+""",
     "escapes": 'robot R { component C { incoming message m with identifier: "a\\d", type: none } }',
     "quotes": "robot R { component C { incoming message m with identifier: \u201c/m\u201d, type: none } }",
     "numbers": "robot R { constant a: double = .5 constant b: double = 1e-3 constant c: double = 2. }",
@@ -135,6 +141,7 @@ TOLD = {
         "write another expression",
         "write the name of an array there",
         "write its content directly",
+        "leave the folder out, or name another type",
     ),
     "a construct must be rewritten": (
         "assign it `on canceled from",

@@ -8,6 +8,7 @@ import robosc
 from robosc.model import sct
 from robosc.run.simulation import Simulation
 from robosc.run.simulation.replay import Replay
+from robosc.run.simulation.script import WAIT, ScriptStep
 from robosc.tools.debugger.launch import Launch
 from tests.searching import slow_but
 
@@ -68,6 +69,36 @@ def test_the_log_of_a_node_is_played_without_a_stop(tmp_path: Path) -> None:
     assert {moment.event for moment in moments} >= {"message_move.c_trigger", "message_halt.c_trigger"}
     assert [moment for moment in moments if not moment.happened] == []
     assert replay.timers.now == 700
+
+
+def test_a_typed_wait_does_not_prolong_a_wait_of_the_script(tmp_path: Path) -> None:
+    file = tmp_path / "r.rscd"
+    file.write_text(
+        """robot R { component C {
+          outgoing message a with type: none
+          behaviour {
+            initial marked state idle { after 3 s goto x }
+            marked state x { after 4 s goto y }
+            marked state y { on response from a goto idle }
+          }
+        } }"""
+    )
+    model = robosc.to_sct(robosc.load(file))
+    robosc.synthesize(model)
+    steps = [ScriptStep(1, WAIT, {"seconds": 6.0}), ScriptStep(2, "message_a.u_response", {})]
+    replay = Replay(Simulation(model), steps)
+    assert replay.forward() is not None
+    assert replay.timers.now == 3000
+    replay.let_go_by(1.0)
+    assert replay.timers.now == 4000
+    wait, response = replay.forward(), replay.forward()
+    assert (wait and wait.event, replay.timers.now) == (WAIT, 6000)
+    assert response is not None
+    assert response.after["component_C"] == "x"
+    while replay.timers.now > 3000:
+        replay.back()
+    replay.let_go_by(10.0)
+    assert replay.next_line == 2
 
 
 def _edges(plant: sct.Plant) -> list[sct.Edge]:

@@ -89,7 +89,7 @@ def test_saved_models_are_checked_too(run: Run, door: Path) -> None:
 
 def test_fix(run: Run, tmp_path: Path) -> None:
     model = tmp_path / "door.rscd"
-    wrong = DOOR.replace("goto opened", "gotto opened").replace("}\n\n  r", "};\n\n  r")
+    wrong = DOOR.replace("needs", "requires").replace("}\n\n  r", "};\n\n  r")
     model.write_bytes(wrong.replace("\n", "\r\n").encode())
     answer = run("check", model, "--fix")
     assert (answer.exit_code, answer.output) == (0, f"{model}: 2 edits\n")
@@ -104,7 +104,7 @@ def test_a_fix_keeps_the_rest_of_the_file(run: Run, tmp_path: Path, breaks: str)
     def written(text: str) -> bytes:
         return b"\xef\xbb\xbf" + text.replace("\n", breaks).replace(breaks, "\r\n", 1).encode()
 
-    model.write_bytes(written(DOOR.replace("goto opened", "gotto opened")))
+    model.write_bytes(written(DOOR.replace("needs", "requires")))
     assert run("check", model, "--fix").exit_code == 0
     assert model.read_bytes() == written(DOOR)
 

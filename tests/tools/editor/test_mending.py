@@ -74,8 +74,8 @@ def test_a_hint_mends(right: str, wrong: str, rule: str) -> None:
     _, actions = ask(text, WHOLE)
     action = next(action for action in actions if action.diagnostics[0].code == rule)
     assert action.diagnostics[0].code == rule
-    # A name in another component is only offered.
-    assert action.is_preferred is (wrong != "idle" and action.title in action.diagnostics[0].message)
+    # A guess is only offered: a name in another component, a keyword, an interface.
+    assert action.is_preferred is (wrong not in {"idle", "nees", ""} and action.title in action.diagnostics[0].message)
     after = edited(text, action.edit.changes[URI])
     assert rule not in errors(after), after
     nowhere = types.Range(types.Position(0, 0), types.Position(0, 0))

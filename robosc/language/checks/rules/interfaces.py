@@ -64,7 +64,7 @@ def _missing_link(communication: rsc.CommunicationType, base: rsc.Base, types: l
     ]
     if fitting:
         link = f"links {escape_keyword(fitting[0].name)}"
-        return Insertion(f"add `{link}` after its types", f" {link}", communication, behind=True)
+        return Insertion(f"add `{link}` after its types", f" {link}", communication, behind=True, is_choice=True)
     name = communication.name
     return (
         f"declare `interface {name} use … from …` with the ROS type and its package, "
@@ -149,7 +149,7 @@ def _faulty(base: rsc.Base, interfaces: RosTypes) -> Iterator[tuple[ex.Located, 
                     if fault.property is element and fault.property is not None:
                         hint = _of_property(fault, fault.property)
                     elif fault.text is not None and fault.property is None and element is data.declared:
-                        hint = Replacement(fault.hint, fault.text, element)
+                        hint = Replacement(fault.hint, fault.text, element, is_choice=fault.is_guess)
                     key = (element, fault.message, hint)
                     places[key] = places.get(key, False) or fault.is_used(uses)
     yield from ((*key, used) for key, used in places.items())

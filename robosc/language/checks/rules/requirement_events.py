@@ -48,9 +48,8 @@ def _sent_on_change(base: rsc.Base) -> Iterator[Finding]:
     for message in communications(base):
         if isinstance(message, rsc.Message) and message.onChange and message.direction == rsc.MessageDirection.outgoing:
             what = f"`{message.name}` comes from its component at any time, expected an incoming message"
-            yield Finding(
-                message, f"{what} before `send: change`", _with_every_tick("leave `, send: change` out", message)
-            )
+            hint = "leave `, send: change` out"
+            yield Finding(message, f"{what} before `send: change`", _with_every_tick(hint, message))
     named: list[tuple[ex.Located, rsc.CommunicationReference]] = []
     named += [(event, event.communicationType) for event in named_events(base)]
     for _, transition in transitions(base):
@@ -59,7 +58,7 @@ def _sent_on_change(base: rsc.Base) -> Iterator[Finding]:
     for where, reference in named:
         sent = communication_of(reference)
         if isinstance(sent, rsc.Message) and sent.onChange and sent.direction == rsc.MessageDirection.incoming:
-            ways: list[Way] = [_with_every_tick("leave `, send: change` out", sent, is_choice=True)]
+            ways: list[Way] = [_with_every_tick("leave `, send: change` out", sent)]
             if isinstance(where, rsc.Transition):
                 ways.append(Removal("leave the transition out", where))
             yield Finding(
@@ -70,8 +69,8 @@ def _sent_on_change(base: rsc.Base) -> Iterator[Finding]:
             )
 
 
-def _with_every_tick(hint: str, message: rsc.Message, *, is_choice: bool = False) -> Removal:
-    return Removal(hint, part_of(message).find(",", "send", ":", "change"), is_choice)
+def _with_every_tick(hint: str, message: rsc.Message) -> Removal:
+    return Removal(hint, part_of(message).find(",", "send", ":", "change"), is_choice=True)
 
 
 def _readers(base: rsc.Base) -> Iterator[Finding]:

@@ -51,13 +51,14 @@ def result_type(base: rsc.Base) -> Iterator[Finding]:
         if communication is not None and event not in allowed:
             prepositions = {name: "to" if name == "request" else "from" for name in allowed}
             forms = {
-                f"on {name} {word} ": f"`on {name} {word} {escape_keyword(communication.name)}`"
+                f"on {name} {word}": f"`on {name} {word} {escape_keyword(communication.name)}`"
                 for name, word in prepositions.items()
             }
             ways: list[Way] = [
                 Replacement(f"write {form}", text, part_of(transition).until(part_of(transition.communicationType)))
                 for text, form in forms.items()
             ]
+            ways.append(Removal("leave the transition out", transition))
             direction = f"{communication.direction} " if isinstance(communication, rsc.Message) else ""
             hint = f"write {enumeration(forms.values())}"
             if isinstance(communication, rsc.Message) and event in _SENT_BY:
@@ -70,7 +71,7 @@ def result_type(base: rsc.Base) -> Iterator[Finding]:
                 transition,
                 f"{direction}{type(communication).__name__.lower()} `{communication.name}` has no {event}, expected"
                 f" {enumeration(f'`{name}`' for name in allowed)}",
-                ways[0] if len(ways) == 1 else Choice(hint, tuple(ways)),
+                Choice(hint, tuple(ways)),
             )
 
 
