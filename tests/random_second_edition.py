@@ -180,7 +180,8 @@ class SecondWriter(Writer):
         condition = self.expression(BOOLEAN, read, 2)
         named = self.one([f"I{number}: ", f'I{number} "as it is": ', ""])
         if self.random.randrange(4) == 0:
-            return f"property {named}reachable {condition}{self.maybe(f' from {self.expression(BOOLEAN, read, 1)}')}"
+            kind = self.one(["requirement", "property"])
+            return f"{kind} {named}reachable {condition}{self.maybe(f' from {self.expression(BOOLEAN, read, 1)}')}"
         return f"{self.one(['requirement', 'property'])} {named}{self.one(['never', 'always'])} {condition}"
 
     def order(self, number: int, sent: list[tuple[Component, Communication]]) -> str:

@@ -78,7 +78,7 @@ _MEANT = {
     **dict.fromkeys(("forall", "exists", "foreach", *ROBOSC_QUANTIFIERS), _QUANTIFIER),
     **dict.fromkeys(("else", "elif", "elseif"), _CASES),
     **dict.fromkeys(("mod", "%"), _MODULO),
-    "reachable": "write `property reachable condition`, or `property reachable condition from condition`",
+    "reachable": "write `property reachable condition`, or `requirement reachable condition` to enforce it",
     "automaton": "write `requirement name: automaton { … }`",
     "then": _CHOICE,
     "?": _CHOICE,

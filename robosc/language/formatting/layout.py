@@ -46,6 +46,7 @@ CLAUSES: dict[str, tuple[set[str], set[str]]] = {
     "StateInvariant": (set(), {"never", "always"}),
     "InvariantProperty": (set(), {"never", "always"}),
     "ReachabilityProperty": ({"from"}, {"reachable"}),
+    "ReachabilityRequirement": ({"from"}, {"reachable"}),
     "ProvideStatement": ({"if"}, set()),
     "Conditional": ({"then", "else"}, set()),
     "Constant": (set(), {"="}),
