@@ -1,7 +1,7 @@
 """Definitions of ROS messages, services and actions, for ROS 1 and ROS 2.
 
 A definition is searched in the folders of the call, in those of ROBOSC_INTERFACE_PATH, in the ROS installation of the
-computer, and among the standard types. Both ROS versions are searched, because they differ in some types.
+computer, and among the shipped types. Both ROS versions are searched, because they differ in some types.
 """
 
 from __future__ import annotations
