@@ -179,7 +179,11 @@ CHECKS: Checks = {
     object: [_own_event],
     rosgraph.RosGraph: [_received_shapes],
     rosgraph.NodeVariable: [check_type("initial", lambda variable: declared_type(variable.type))],
-    rosgraph.FieldAssignment: [check_type("value", lambda field: declared_type(field.type)), _FIELD],
+    rosgraph.FieldAssignment: [
+        check_type("value", lambda field: declared_type(field.type)),
+        check_type("condition"),
+        _FIELD,
+    ],
     rosgraph.InputAssignment: [check_type("value", lambda assignment: declared_type(assignment.input.type))],
     rosgraph.NodeAssignment: [check_type("value", lambda assignment: declared_type(assignment.variable.type))],
     rosgraph.ConversionRule: [check_type("condition")],
