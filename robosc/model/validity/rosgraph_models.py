@@ -160,7 +160,8 @@ _ONE_PLANT = demand(
 _WHOLE = demand(
     lambda access: (
         access.type is not None
-        or isinstance(access.eContainer(), rosgraph.ConversionCall | rosgraph.NodeAssignment | rosgraph.FieldAssignment)
+        or isinstance(access.eContainer(), rosgraph.ConversionCall | rosgraph.NodeAssignment)
+        or (isinstance(access.eContainer(), rosgraph.FieldAssignment) and access.eContainer().value is access)
     ),
     "only inputs of conversions and data stored or sent as a whole may have no type",
 )
