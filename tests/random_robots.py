@@ -327,6 +327,7 @@ class Writer:
         seldom = [
             f"never {condition}",
             f"always {condition}",
+            f"reachable {condition}{self.maybe(f' from {condition}')}",
             f"{target} after {self.maybe('each ')}{anchor}",
             f"at most {self.random.randint(1, 4)} {target} since {anchor}",
             f"automaton {{ initial state a {{ on {anchor} if {condition} goto b }} state b {{ on {anchor} goto a }} }}",

@@ -38,11 +38,14 @@ class _Sketch:
 
 
 @st.composite
-def sct_models(draw: st.DrawFn, *, data: bool = True, requirements: bool = False) -> sct.SupervisoryControlModel:
+def sct_models(
+    draw: st.DrawFn, *, data: bool = True, requirements: bool = False, goals: bool = False
+) -> sct.SupervisoryControlModel:
     """Return models without a supervisor: plants with shared events, guards, saturating updates, inputs, requirements.
 
     With `data`, some have plants like those of provide statements (semantics.md, point 4), which nothing reads. With
-    `requirements`, some have invariants, requirement automata, and requirements on uncontrollable events.
+    `requirements`, some have invariants, requirement automata, and requirements on uncontrollable events and about
+    reachable states; with `goals`, all have the last ones.
     """
     sketches = [draw(_sketches(f"p{index}")) for index in range(draw(st.integers(1, 3)))]
     scope = _Scope(
@@ -63,7 +66,11 @@ def sct_models(draw: st.DrawFn, *, data: bool = True, requirements: bool = False
         for _ in range(draw(st.integers(0, 3)) if events else 0)
     ]
     conditions = [_boolean(draw, scope, 3) for _ in range(draw(st.sampled_from((0, 1, 2))) if requirements else 0)]
-    return model(plants, restrictions, _ENUMERATIONS, invariants=conditions)
+    wanted = [
+        (_boolean(draw, scope, 2), _boolean(draw, scope, 2) if draw(st.booleans()) else None)
+        for _ in range(draw(st.sampled_from((1, 1, 2) if goals else (0, 0, 1, 2))) if requirements else 0)
+    ]
+    return model(plants, restrictions, _ENUMERATIONS, invariants=conditions, reachable=wanted)
 
 
 @st.composite

@@ -180,7 +180,8 @@ class SecondWriter(Writer):
         condition = self.expression(BOOLEAN, read, 2)
         named = self.one([f"I{number}: ", f'I{number} "as it is": ', ""])
         if self.random.randrange(4) == 0:
-            return f"property {named}reachable {condition}{self.maybe(f' from {self.expression(BOOLEAN, read, 1)}')}"
+            kind = self.one(["requirement", "property"])
+            return f"{kind} {named}reachable {condition}{self.maybe(f' from {self.expression(BOOLEAN, read, 1)}')}"
         return f"{self.one(['requirement', 'property'])} {named}{self.one(['never', 'always'])} {condition}"
 
     def order(self, number: int, sent: list[tuple[Component, Communication]]) -> str:
@@ -257,10 +258,12 @@ def kept(seed: int) -> list[str]:
     limit = one("k1", "0.25, 1", "0.5, where: k0", "keptReach")
     needed = one("Kept.keptSome", "Kept.ahead = keptClear", "abs(Kept.keptNext - 1) < max(k0, 1)")
     change = one(", send: change", "")
+    chosen = f"if {needed} then {{ poses: Kept.route[0..1] }} else {one('Kept.path', '{}')}"
+    sums = f"if Kept.level < keptReach then [] else {one('[Kept.level]', 'Kept.joints.position')}"
     provided = [
         f"provide keptGo with {{ pose: Kept.route[{one('0', 'Kept.keptNext', 'size(Kept.route) - 1')}].pose }}",
-        f"provide keptAgain with {one('{ poses: Kept.route }', '{ poses: Kept.route[0..1] }', 'Kept.path')}",
-        f"provide keptSums with {{ data: {one('[1.0, Kept.level]', '[]', 'Kept.joints.position')} }}",
+        f"provide keptAgain with {one('{ poses: Kept.route }', chosen, 'Kept.path')}",
+        f"provide keptSums with {{ data: {one('[1.0, Kept.level]', sums, 'Kept.joints.position')} }}",
     ]
     return [
         "// How far it looks.",
@@ -312,7 +315,9 @@ def nested(choose: Callable[..., str]) -> list[str]:
     given = choose("outer", "{ inner: Nest.inner, list: Nest.list }", "{ list: Nest.outer.list[0..Nest.nestAt] }")
     whole = "Nest.outer" if given == "outer" else given
     parts = choose(
-        "Nest.inner.deep", "Nest.outer.list[Nest.nestAt].deep", "{ name: Nest.deep.name, known: Nest.nestSaw }"
+        "Nest.inner.deep",
+        "if Nest.nestSaw then Nest.outer.list[Nest.nestAt].deep else { known: true }",
+        "{ name: Nest.deep.name, known: Nest.nestSaw }",
     )
     return [
         "datatype object NestDeep { known: boolean name: string }",

@@ -150,8 +150,12 @@ def model(
     name: str = "robot",
     guards: Mapping[str, str | tuple[str | None, str | None]] | None = None,
     invariants: Sequence[str] = (),
+    reachable: Sequence[tuple[str, str | None]] = (),
 ) -> sct.SupervisoryControlModel:
-    """Return the model. `guards` attaches a supervisor without synthesis: event to requirement part, or both parts."""
+    """Return the model. `guards` attaches a supervisor without synthesis: event to requirement part, or both parts.
+
+    `reachable` are conditions that must stay reachable, each with its premise or None.
+    """
     scope = _Scope(
         [given_plant.element for given_plant in plants],
         [
@@ -179,6 +183,14 @@ def model(
         invariants=[
             sct.StateInvariant(condition=scope.expression(condition, None), text=f"requirement always {condition}")
             for condition in invariants
+        ],
+        reachabilityRequirements=[
+            sct.ReachabilityRequirement(
+                condition=scope.expression(condition, None),
+                premise=None if premise is None else scope.expression(premise, None),
+                text=f"requirement reachable {condition}" + ("" if premise is None else f" from {premise}"),
+            )
+            for condition, premise in reachable
         ],
     )
     if guards is not None:

@@ -39,12 +39,6 @@ def answered(name: str, result: str = "") -> str:
     return f"service_{name}.u_response{result}"
 
 
-@pytest.fixture(autouse=True)
-def nav2(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Make the definitions of Nav2 available, as on a robot with Nav2."""
-    monkeypatch.setenv("ROBOSC_INTERFACE_PATH", str(DOCS.parent / "tests" / "ros" / "interfaces" / "ros2"))
-
-
 @EACH
 @pytest.mark.parametrize("command", ["check", "synthesize", pytest.param("verify", marks=pytest.mark.slow)])
 def test_nothing_is_said_of_it(name: str, command: str) -> None:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from robosc.analysis.paths import Path, TraceStep, deciding, shortest_path
+from robosc.model import sct
 from robosc.synthesis.decoding import Value, value
 from robosc.synthesis.encoding import pick
 
@@ -13,7 +14,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from robosc.analysis.system import Codes, SynthesizedSystem
-    from robosc.model import sct
     from robosc.synthesis.bdd import Diagram
     from robosc.synthesis.encoding import Element
     from robosc.synthesis.relation import EventRelation, Move
@@ -30,7 +30,8 @@ class BlockReason:
     its last state; if a requirement forbids the event, it is the state before the event. It has the location of every
     plant with several locations and the value of every variable. `codes` are those of that state. `requirements` forbid
     the event at fault there, or something after it. `violated` are the invariants that do not hold after the event, or
-    at the start.
+    at the start, or the requirements whose states are unreachable from there. `goal` is the requirement to whose states
+    the trace leads, in place of the marked ones.
     """
 
     event: sct.Event | None
@@ -40,6 +41,7 @@ class BlockReason:
     codes: Mapping[Element, int] = field(repr=False)
     requirements: tuple[sct.Requirement, ...] = ()
     violated: tuple[sct.StatedRequirement, ...] = ()
+    goal: sct.ReachabilityRequirement | None = None
 
 
 def reason_of_emptiness(system: SynthesizedSystem) -> BlockReason:
@@ -65,7 +67,9 @@ def _uncontrollable(system: SynthesizedSystem) -> BlockReason:
     )
     violated = system.violated(last.states[-1])
     if violated:
-        return replace(reason, event=event, unmarked=(), violated=violated)
+        reason = replace(reason, unmarked=(), violated=violated)
+        if not isinstance(violated[0], sct.ReachabilityRequirement):
+            return replace(reason, event=event)
     changing = {relation.event for relation, _ in system.plant_moves}
     at_fault = [requirement for requirement in forbidden_from(system, last.states[-1]) if requirement.event in changing]
     return replace(reason, event=event, requirements=tuple(at_fault))
@@ -73,13 +77,17 @@ def _uncontrollable(system: SynthesizedSystem) -> BlockReason:
 
 def _blocked_from_the_start(system: SynthesizedSystem) -> BlockReason:
     encoding = system.encoding
-    marked, path = encoding.all_marked & system.uncontrolled, None
-    if marked.satisfiable():  # else the search would visit all states, layer by layer
-        path = shortest_path(encoding, system.plant_moves, encoding.initial, marked, system.diagrams.true)
+    path = _path_of_plants(system, encoding.all_marked)
     start = encoding.initial_codes if path is None else path.states[0]
     unmarked = system.never_marked(start)
     violated = system.violated(start)
-    if violated:
+    goal = violated[0] if violated else None
+    if isinstance(goal, sct.ReachabilityRequirement):
+        path = _path_of_plants(system, system.goals[goal].states)
+        unmarked = []
+    else:
+        goal = None
+    if violated and (goal is None or path is None):
         return replace(_described(system, (), [], start), violated=violated)
     if path is None:
         return _described(system, unmarked, [], start)
@@ -92,12 +100,23 @@ def _blocked_from_the_start(system: SynthesizedSystem) -> BlockReason:
                 for requirement, permission in relation.permissions.items()
                 if not system.is_in(codes, permission)
             ]
-            return replace(reason, event=relation.event, requirements=tuple(at_fault))
+            return replace(reason, event=relation.event, requirements=tuple(at_fault), goal=goal)
         violated = system.violated(after)
-        if violated:
+        if violated and goal not in violated:
             reason = _described(system, (), steps[: index + 1], after)
-            return replace(reason, event=relation.event, violated=violated)
+            return replace(reason, event=relation.event, violated=violated, goal=goal)
+    if goal is not None:  # The states of the goal reach no marked state.
+        return replace(_described(system, (), [], start), violated=(goal,))
     raise AssertionError("the requirements forbid nothing on the way")
+
+
+def _path_of_plants(system: SynthesizedSystem, goal: Diagram) -> Path | None:
+    """Return a shortest path of the plants from an initial state to one of these states; None if there is none."""
+    reached = goal & system.uncontrolled
+    if not reached.satisfiable():  # The search would visit all states, layer by layer.
+        return None
+    encoding = system.encoding
+    return shortest_path(encoding, system.plant_moves, encoding.initial, reached, system.diagrams.true)
 
 
 def _described(
@@ -121,8 +140,8 @@ class BlockingCounterexample:
     `onwards` is a path from there under the requirements to a state that violates an invariant or reaches no marked
     state, as `unavoidable` computes it. Its last event is the uncontrollable event that the supervisor guards against.
     It is empty if no event is needed. `codes` are those of its last state. `violated` are the invariants that do not
-    hold there. If all hold, `unmarked` are the plants that can no longer be in a marked location; none if each can be,
-    but never all at once.
+    hold there, or the requirements whose states it cannot reach. If there are none, `unmarked` are the plants that can
+    no longer be in a marked location; none if each can be, but never all at once.
     """
 
     trace: tuple[TraceStep, ...]
@@ -156,10 +175,10 @@ def blocking_counterexample(system: SynthesizedSystem, event: sct.Event, way: Pa
 def unavoidable(system: SynthesizedSystem, start: Codes) -> Path:
     """Return a path from a removed state to one that was removed first, driven by uncontrollable events.
 
-    The last state violates an invariant or reaches no marked state. Round by round, backwards: uncontrollable events
-    lead from the state to one that reaches no marked state without the states that earlier rounds removed. Its shortest
-    path to a marked state visits one of those, and so on. The last event is therefore uncontrollable. The path is empty
-    if the start itself reaches no marked state.
+    The last state violates an invariant or does not reach one of its goals, such as a marked state. Round by round,
+    backwards: uncontrollable events lead from the state to one that does not reach a goal without the states that
+    earlier rounds removed. Its shortest path to the goal visits one of those, and so on. The last event is therefore
+    uncontrollable. The path is empty if the start itself does not reach a goal.
     """
     uncontrollable = _uncontrollable_moves(system)
     rounds, alive = system.solution.rounds, system.solution.alive

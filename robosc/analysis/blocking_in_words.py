@@ -4,7 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.analysis.wording import NAMED, forbid, in_words, join_with_and, name, quote_requirements, violates, words
+from robosc.analysis.wording import (
+    NAMED,
+    forbid,
+    goal_in_words,
+    in_words,
+    join_with_and,
+    name,
+    quote_requirements,
+    violates,
+    words,
+)
 from robosc.model import sct
 
 if TYPE_CHECKING:
@@ -13,20 +23,27 @@ if TYPE_CHECKING:
 
 def describe_blocking(reason: BlockReason) -> str:
     """Return why there is no supervisor, as a sentence without its trace."""
+    way = "the shortest way to a marked state"
+    unreachable = "no marked state can be reached"
+    if reason.goal is not None:
+        unreachable = violates(quote_requirements([reason.goal]), [reason.goal])
+        way = f"{unreachable}: the shortest way to one"
     if reason.violated:
         problem = violates(quote_requirements(reason.violated), reason.violated)
         if reason.event is None:
             return f"{problem} from the start"
-        if reason.event.controllable:
-            return f"the shortest way to a marked state needs {words(reason.event)}, after which {problem}"
+        if reason.event.controllable or reason.goal is not None:
+            return f"{way} needs {words(reason.event)}, after which {problem}"
         return f"{words(reason.event)} cannot be prevented, and after it {problem}"
-    problem = "no marked state can be reached"
+    problem = unreachable
     if reason.event is None:
         problem += " at all"
-    elif reason.event.controllable:
+    elif reason.event.controllable or reason.goal is not None:
         problem += f": the shortest way to one needs {words(reason.event)} where {forbid(reason.requirements, 'it')}"
     else:
         problem = f"{words(reason.event)} cannot be prevented, and after it {problem}"
+    if reason.goal is not None:
+        return problem
     named = [_stuck(plant, reason) for plant in reason.unmarked[:NAMED]]
     if len(reason.unmarked) > NAMED:
         named.append(f"{len(reason.unmarked) - NAMED} more")
@@ -72,6 +89,8 @@ def way_out(counterexample: BlockingCounterexample) -> str:
         loosen = f"loosen the {'requirement' if len(counterexample.violated) == 1 else 'requirements'}"
         if all(isinstance(requirement, sct.Requirement) for requirement in counterexample.violated):
             return loosen
+        if goals := list(filter(None, map(goal_in_words, counterexample.violated))):
+            return f"give the robot a way from there to a {goals[0]}, or {loosen}"
         return f"{loosen}: add a `needs` requirement for each command, or a command that undoes the event"
     stuck = [f"`{name(plant)}`" for plant in counterexample.unmarked if plant.kind == sct.PlantKind.behaviour]
     return f"give {join_with_and(stuck) or 'the components'} a way from there to a marked state"

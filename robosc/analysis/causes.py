@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, TypeAlias
 
 from robosc.analysis.observations import Forbidden
+from robosc.base.diagnostics import Related
 from robosc.model import sct
 from robosc.model.semantics.edges import edges_of
 from robosc.model.semantics.roles import event_name
@@ -85,4 +86,6 @@ def with_causes(findings: Mapping[Absent, Diagnostic], follows: Mapping[Absent, 
 def _following(finding: Diagnostic, cause: Diagnostic, depth: int) -> Diagnostic:
     where = f"line {cause.span.line}" if cause.file == finding.file else f"{cause.file}:{cause.span.line}"
     message = f"therefore, {finding.message}"
-    return replace(finding, message=message, hint=f"correct the cause in {where} first", follows=depth)
+    related = (Related(cause.file, cause.span, "the cause of this finding"), *finding.related)
+    hint = f"correct the cause in {where} first"
+    return replace(finding, message=message, hint=hint, related=related, follows=depth)

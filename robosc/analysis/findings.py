@@ -105,7 +105,7 @@ def _is_own_restriction(observed: Hindrance | NeverEnabled, model: sct.Superviso
 
 def _named_in_own_text(model: sct.SupervisoryControlModel) -> set[sct.Location]:
     """Return the locations that requirements, properties and guards in the robot's own text read."""
-    texts = [*model.plants, *model.requirements, *model.invariants, *model.properties]
+    texts = [*model.plants, *model.requirements, *model.invariants, *model.reachabilityRequirements, *model.properties]
     return {
         node.location
         for text in texts
@@ -143,7 +143,8 @@ class _Findings:
                 why += f", for example {way}"
         elif observed.counterexample is not None and not observed.kept_away:
             why, hint = counterexample_in_words(observed.counterexample, self._model), way_out(observed.counterexample)
-            if observed.counterexample.violated and plant.kind == sct.PlantKind.action:
+            invariants = any(isinstance(own, sct.StateInvariant) for own in observed.counterexample.violated)
+            if invariants and plant.kind == sct.PlantKind.action:
                 hint = hint.partition(":")[0]
                 hint += " (what the action `needs` cancels it; `never` and `always` do not let it start)"
         elif observed.kept_away:

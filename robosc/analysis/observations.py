@@ -175,7 +175,7 @@ class Weight:
 
     If it restricts the controller, these are the controlled states in which the plants allow an event that it forbids.
     Otherwise, they are the states that it forbids among those reachable under the requirements that restrict the
-    controller.
+    controller. For one about reachable states, these are the states that cannot reach its condition.
     """
 
     requirements: tuple[sct.StatedRequirement, ...]
@@ -247,6 +247,8 @@ class Observer:
     def _matters(self, requirement: sct.StatedRequirement) -> Diagram:
         if requirement in self._system.violations:
             return self._system.solution.rounds[0] & self._system.violations[requirement]
+        if isinstance(requirement, sct.ReachabilityRequirement):
+            return self._system.stranded(requirement)
         assert isinstance(requirement, sct.Requirement)
         relation = self._system.relations[requirement.event]
         return self._system.controlled & relation.enabled & ~relation.permissions[requirement]
@@ -279,7 +281,7 @@ class Observer:
     def _way_of_plants(self, goal: Diagram) -> Path | None:
         """Return a shortest path of the plants to one of these states; None if it exceeds the effort limit."""
         system = self._system
-        within, effort = system.uncontrolled, None if system.violations else _EFFORT
+        within, effort = system.uncontrolled, None if system.violations or system.goals else _EFFORT
         return Layers(system.encoding, system.plant_moves, system.encoding.initial, within).path_to(
             goal & within, effort
         )

@@ -14,14 +14,14 @@ from decimal import Decimal
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from robosc.analysis.paths import Layers, trace
+from robosc.analysis.paths import Layers, shortest_path, trace
 from robosc.analysis.wording import condition
 from robosc.model import sct
 from robosc.model.semantics.definition import named_state
 from robosc.model.semantics.roles import Roles, plant_of
 from robosc.synthesis.decoding import value
-from robosc.synthesis.fixpoint import reachable, supervise
-from robosc.synthesis.relation import event_relations, plant_moves, required_moves, steps, violations
+from robosc.synthesis.fixpoint import coreachable, reachable, supervise
+from robosc.synthesis.relation import event_relations, goals, plant_moves, required_moves, steps, violations
 from robosc.synthesis.run_to_completion import Completion, completion, internal_events
 
 if TYPE_CHECKING:
@@ -70,6 +70,8 @@ class SupervisedSystem:
         self.plant_moves = plant_moves(relations.values())
         #: States that violate a requirement independently of the supervisor, reachable or not.
         self.violations = violations(model, relations.values(), encoding)
+        #: States that requirements want to be reachable.
+        self.goals = goals(model, encoding)
 
     @cached_property
     def initial(self) -> Diagram:
@@ -171,7 +173,7 @@ class SynthesizedSystem(SupervisedSystem):
             model, encoding, {relation.event: relation for relation in relations}, required_moves(relations)
         )
         self.required = {relation.event: relation.requirement for relation in relations}
-        self.solution = supervise(encoding, self.moves, self.violating) if solution is None else solution
+        self.solution = solution or supervise(encoding, self.moves, self.violating, self.goals.values())
         self.controlled = self.solution.controlled
 
     def without(self, requirements: AbstractSet[sct.StatedRequirement]) -> SynthesizedSystem:
@@ -194,9 +196,40 @@ class SynthesizedSystem(SupervisedSystem):
         other.violations = {
             requirement: states for requirement, states in self.violations.items() if requirement not in requirements
         }
-        other.solution = supervise(self.encoding, other.moves, other.violating)
+        other.goals = {required: goal for required, goal in self.goals.items() if required not in requirements}
+        other.solution = supervise(self.encoding, other.moves, other.violating, other.goals.values())
         other.controlled = other.solution.controlled
         return other
+
+    def violated(self, codes: Codes) -> tuple[sct.StatedRequirement, ...]:
+        """Return the requirements that a state violates, else those whose states it cannot reach.
+
+        If it reaches them, the result is about the first state that does not, on a shortest way to a marked state.
+        """
+        violated = super().violated(codes) or self._unreachable_goals(codes)
+        if violated or not self.goals:
+            return violated
+        encoding, allowed = self.encoding, self.solution.rounds[0] & ~self.violating
+        way = shortest_path(encoding, self.moves, encoding.state(codes), encoding.all_marked & allowed, allowed)
+        unreachable = map(self._unreachable_goals, () if way is None else way.states)
+        return next(filter(None, unreachable), ())
+
+    def _unreachable_goals(self, codes: Codes) -> tuple[sct.StatedRequirement, ...]:
+        """Return the requirements with a premise that holds in a state and a goal that it cannot reach."""
+        here = self.encoding.state(codes)
+        due = {required: goal.states for required, goal in self.goals.items() if self.is_in(codes, goal.premise)}
+        if not due:
+            return ()
+        onwards = reachable(self.diagrams, steps(self.moves), here, self.solution.alive[0] | here)
+        return tuple(required for required, states in due.items() if not (onwards & states).satisfiable())
+
+    def stranded(self, required: sct.ReachabilityRequirement) -> Diagram:
+        """Return the states with the premise of a requirement that cannot reach its goal.
+
+        They are reachable under the requirements that restrict events.
+        """
+        goal, reached = self.goals[required], self.solution.rounds[0]
+        return reached & goal.premise & ~coreachable(self.diagrams, steps(self.moves), goal.states & reached, reached)
 
     def allowed(self, event: sct.Event) -> Diagram:
         """Return the controlled states in which the event can happen."""
@@ -212,7 +245,11 @@ class SynthesizedSystem(SupervisedSystem):
         Requirements that define when an action is canceled are left out.
         """
         enforced = (requirement for requirement in self.model.requirements if self.start_of(requirement.event) is None)
-        own: list[sct.StatedRequirement] = [*enforced, *self.model.invariants]
+        own: list[sct.StatedRequirement] = [
+            *enforced,
+            *self.model.invariants,
+            *self.model.reachabilityRequirements,
+        ]
         by_place: dict[object, list[sct.StatedRequirement]] = {}
         for requirement in dict.fromkeys([*(requirement for requirement in first if requirement in own), *own]):
             by_place.setdefault(requirement.source or requirement, []).append(requirement)

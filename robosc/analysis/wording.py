@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from robosc.model import sct
 from robosc.model.semantics.durations import timer_text
 from robosc.model.semantics.edges import edges_from
+from robosc.model.semantics.printing import RobotPrinter
 from robosc.model.semantics.roles import event_name, plant_of, provide_number
 from robosc.synthesis.decoding import text
 
@@ -120,7 +121,17 @@ def violates(named: str, requirements: Sequence[sct.StatedRequirement]) -> str:
     )
     if events:
         return f"{join_with_and([words(event) for event in events])} can come, which {named} {_forbid(requirements)}"
+    goals = dict.fromkeys(map(goal_in_words, requirements))
+    if None not in goals:
+        return f"{named} cannot be satisfied: no {' and no '.join(filter(None, goals))} can be reached"
     return f"{named} {'is' if len(requirements) == 1 else 'are'} violated"
+
+
+def goal_in_words(requirement: sct.StatedRequirement) -> str | None:
+    """Return the states that a requirement wants to be reachable: "state with `Base.docked`"; None for other kinds."""
+    if not isinstance(requirement, sct.ReachabilityRequirement):
+        return None
+    return f"state with `{RobotPrinter()(requirement.condition)}`"
 
 
 def _forbid(requirements: Sequence[sct.StatedRequirement]) -> str:

@@ -23,7 +23,7 @@ from robosc.model.semantics.communication import RUNNING_WORD, event_names, sent
 from robosc.model.semantics.failures import FAILURE, FAILURES, reasons
 from robosc.model.semantics.naming import escape_keyword
 from robosc.model.semantics.operators import FUNCTIONS
-from robosc.model.semantics.typing import ObjectType, access_types, declared_type, provided_data_type, value_type
+from robosc.model.semantics.typing import ObjectType, access_types, object_value_type, value_type
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -241,7 +241,7 @@ def _candidates(
             before = access_types(access, value_type(access))[list(access.segments).index(element)]
             yield from _properties(linker, before)
         case rsc.ObjectPropertyValue():
-            yield from _properties(linker, _object_type(element))
+            yield from _properties(linker, object_value_type(element.eContainer()))
         case rsc.Transition():
             own = linker.around(element, rsc.Component)
             yield from (linker.scope.states(own) if own is not None else {}).items()
@@ -378,14 +378,6 @@ def _running(linker: Linker, component: rsc.Component) -> Iterator[tuple[str, An
     for name, communication in (linker.scope.communications(component) or {}).items():
         if isinstance(communication, rsc.Service | rsc.Action):
             yield f"{name}.{RUNNING_WORD}", communication
-
-
-def _object_type(element: rsc.ObjectPropertyValue) -> Any:
-    around = element.eContainer().eContainer()
-    if isinstance(around, rsc.ProvideStatement):
-        reference = around.communicationType
-        return provided_data_type(reference.communicationType if reference else None)
-    return declared_type(around.property.type) if getattr(around, "property", None) else None
 
 
 def _properties(linker: Linker, of: Any) -> Iterator[tuple[str, Any]]:

@@ -286,6 +286,8 @@ def _statements(file: File, element: Any) -> str:
             return f"`verify` proves that `{condition}` {'never' if never else 'always'} holds, or refutes it."
     premise = _source(file, element.premise) if element.premise is not None else None
     start = "every state" if premise is None else f"every state with `{premise}`"
+    if isinstance(element, rsc.ReachabilityRequirement):
+        return f"From {start}, the supervised robot can reach a state with `{condition}`."
     return f"`verify` proves that from {start}, a state with `{condition}` can be reached, or refutes it."
 
 

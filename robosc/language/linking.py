@@ -29,8 +29,7 @@ from robosc.model.semantics.typing import (
     EnumType,
     ObjectType,
     Type,
-    declared_type,
-    provided_data_type,
+    object_value_type,
     segment_type,
     start_type,
     value_type,
@@ -852,11 +851,7 @@ class Linker:
             segment.property = prop
 
     def _property_value(self, element: rsc.ObjectPropertyValue, name: Name) -> None:
-        around = element.eContainer().eContainer()
-        if isinstance(around, rsc.ProvideStatement):
-            expected = provided_data_type(around.communicationType.communicationType)
-        else:
-            expected = declared_type(around.property.type) if around.property else UNKNOWN
+        expected = object_value_type(element.eContainer())
         # The type rules check whether an object is allowed here.
         prop = self._property(expected, name) if isinstance(expected, ObjectType) else None
         if prop is not None:

@@ -78,7 +78,7 @@ _MEANT = {
     **dict.fromkeys(("forall", "exists", "foreach", *ROBOSC_QUANTIFIERS), _QUANTIFIER),
     **dict.fromkeys(("else", "elif", "elseif"), _CASES),
     **dict.fromkeys(("mod", "%"), _MODULO),
-    "reachable": "write `property reachable condition`, or `property reachable condition from condition`",
+    "reachable": "write `property reachable condition`, or `requirement reachable condition` to enforce it",
     "automaton": "write `requirement name: automaton { … }`",
     "then": _CHOICE,
     "?": _CHOICE,
@@ -203,7 +203,7 @@ def hint(tokens: Tokens, index: int, expectations: Sequence[str], block: Block) 
         return definite
     if before.is_name and before.text in expectations and is_reserved(before.text):
         return f"is a name missing before `{before.text}`?"
-    if "then" in expectations:
+    if "then" in expectations or "else" in expectations:
         return _CHOICE
     if before.is_keyword(",") and token.kind is Kind.SYMBOL:
         is_last = token.text in {")", "]", "}"}  # elsewhere, a value may be missing
@@ -377,8 +377,8 @@ def _statement_hint(tokens: Tokens, index: int, expectations: Sequence[str], blo
         return _timed_hint(token, before, expectations)
     if starter.is_keyword("incoming", "outgoing", "service", "action"):
         return _order_hint(tokens, index, expectations)
-    if starter.is_keyword("provide") and token.text == ":":
-        return "write the properties of an object in braces"
+    if starter.is_keyword("provide") and token.text in {"else", ":"}:
+        return _CHOICE if token.text == "else" else "write the properties of an object in braces"
     if starter.is_keyword("requirement", "property"):
         return _set_hint(tokens, index, block) or _requirement_hint(token, before, expectations)
     if starter.is_keyword("component") and "is" in expectations and token.text in {"=", ":"}:

@@ -10,6 +10,7 @@ from robosc.base.ros_types.wire import PRIMITIVES, Basic, NestedType, Sequence
 from robosc.language.document_symbols import own_elements, span
 from robosc.model import robosc as rsc
 from robosc.model.semantics.communication import carrying_events, event, sending_event
+from robosc.model.semantics.walks import branches
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -45,10 +46,10 @@ def units(file: File, ros_types: RosTypes) -> Iterator[tuple[int, str]]:
 
 
 def _provided(file: File, value: Any, measured: _Measured | None, ros_types: RosTypes) -> Iterator[tuple[int, str]]:
-    if not isinstance(value, rsc.ObjectValue):
+    objects = [branch for _, branch in branches(value) if isinstance(branch, rsc.ObjectValue)]
+    if not objects:
         yield from _unit_notes(file, value, measured)
-        return
-    for field in value.properties:
+    for field in (field for branch in objects for field in branch.properties):
         yield from _provided(file, field.value, _field(measured, field.property, ros_types), ros_types)
 
 

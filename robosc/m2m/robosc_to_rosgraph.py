@@ -27,7 +27,8 @@ from robosc.model.semantics.instances import bound_arguments
 from robosc.model.semantics.messages import EACH, holds_objects, is_structured, origins, reads_elements
 from robosc.model.semantics.naming import Names
 from robosc.model.semantics.printing import RoboscPrinter, conjunction
-from robosc.model.semantics.typing import ObjectType, declared_type
+from robosc.model.semantics.typing import ArrayType, ObjectType, declared_type
+from robosc.model.semantics.walks import branches
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -205,6 +206,12 @@ class _RoboscToRosgraph:
     def fields(
         self, data: ex.Expression, within: Instance | None, path: tuple[str, ...], declared: robosc.DataType
     ) -> list[rosgraph.FieldAssignment]:
+        if isinstance(data, ex.Conditional) and isinstance(declared_type(declared), ArrayType | ObjectType):
+            return [
+                self.under(conditions, field, within)
+                for conditions, branch in branches(data)
+                for field in self.fields(branch, within, path, declared)
+            ]
         if isinstance(data, robosc.ArrayLiteral):
             assert isinstance(declared, robosc.Array)
             values = [self.converted(element, within, declared.type) for element in data.elements]
@@ -227,6 +234,20 @@ class _RoboscToRosgraph:
                 source=data.source,
             )
         ]
+
+    def under(
+        self,
+        conditions: Sequence[tuple[ex.Expression, bool]],
+        field: rosgraph.FieldAssignment,
+        within: Instance | None,
+    ) -> rosgraph.FieldAssignment:
+        """Let an assignment happen only if these conditions hold, or do not hold, in this order."""
+        tests = [
+            test if holds else ex.Negation(operand=test)
+            for test, holds in ((self.expressions(condition, within), holds) for condition, holds in conditions)
+        ]
+        field.condition = conjunction([*tests, *([field.condition] if field.condition is not None else [])])
+        return field
 
     def converted(self, value: ex.Expression, within: Instance | None, declared: robosc.DataType) -> ex.Expression:
         expression = self.expressions(value, within)

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from robosc.model.semantics.inputs import InputSource
 
 _Definition = TypeVar("_Definition", bound=robosc.StatedDefinition)
+_Claim = TypeVar("_Claim", robosc.Property, robosc.ReachabilityRequirement)
 
 #: Events from the robot, or events that must always be possible. A component ignores them in all other states.
 _NEVER_BLOCKED = (
@@ -392,6 +393,8 @@ class _RoboscToSct:
             self.restrictions(automaton)
         for invariant in self.instances.statements(robosc.StateInvariant):
             self.invariant(invariant)
+        for required in self.instances.statements(robosc.ReachabilityRequirement):
+            self.claim(required)
         for claimed in self.instances.statements(robosc.Property):
             self.claim(claimed)
 
@@ -490,24 +493,30 @@ class _RoboscToSct:
         self.model.invariants.append(target)
         self.trace.origins[target] = invariant
 
-    def claim(self, statement: Statement[robosc.Property]) -> None:
+    def claim(self, statement: Statement[_Claim]) -> None:
+        """Add a property, or the requirement that has the form of one."""
         claimed, within = statement.element, statement.within
         condition = self.expressions(claimed.condition, within)
         text = self.print(self.instances.expanded(claimed.condition, within, readable=True))
-        claim: sct.Property
+        claim: sct.Property | sct.ReachabilityRequirement
         if isinstance(claimed, robosc.InvariantProperty):
             never = claimed.kind == robosc.InvariantKind.never
             claim = sct.InvariantProperty(condition=ex.Negation(operand=condition) if never else condition)
             text = f"{claimed.kind.name} {text}"
         else:
-            assert isinstance(claimed, robosc.ReachabilityProperty)
-            claim, text = sct.ReachabilityProperty(condition=condition), f"reachable {text}"
+            assert isinstance(claimed, robosc.ReachabilityProperty | robosc.ReachabilityRequirement)
+            is_enforced = isinstance(claimed, robosc.ReachabilityRequirement)
+            claim = sct.ReachabilityRequirement() if is_enforced else sct.ReachabilityProperty()
+            claim.condition, text = condition, f"reachable {text}"
             if claimed.premise is not None:
                 claim.premise = self.expressions(claimed.premise, within)
                 text += f" from {self.print(self.instances.expanded(claimed.premise, within, readable=True))}"
         claim.name, claim.source = _statement_name(statement), claimed.source
         claim.text = f"{self.heading(statement)} {text}"
-        self.model.properties.append(claim)
+        if isinstance(claim, sct.ReachabilityRequirement):
+            self.model.reachabilityRequirements.append(claim)
+        else:
+            self.model.properties.append(claim)
         self.trace.origins[claim] = claimed
 
     def heading(self, statement: Statement[_Definition]) -> str:

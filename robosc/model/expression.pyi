@@ -137,7 +137,7 @@ class DoubleConversion(UnaryExpression):
     def __init__(self, *, operand: Expression | None = ..., source: Place | None = ...) -> None: ...
 
 class Conditional(Expression):
-    """`then` if the condition holds, else `otherwise`. Only transformations create this element."""
+    """`then` if the condition holds, else `otherwise`. Only in provided data of a robosc model, the two may be objects or arrays."""
     condition: Expression
     then: Expression
     otherwise: Expression

@@ -421,6 +421,12 @@ class InvariantKind:
     never: ClassVar[InvariantKind]
     always: ClassVar[InvariantKind]
 
+class ReachabilityRequirement(Requirement):
+    """The supervised robot can always reach a state with the condition."""
+    condition: expression.Expression
+    premise: expression.Expression | None
+    def __init__(self, *, condition: expression.Expression | None = ..., premise: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+
 class OrderRequirement(Requirement):
     """A restriction of events to after another event."""
     target: EventSet

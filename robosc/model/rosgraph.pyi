@@ -109,7 +109,8 @@ class FieldAssignment(expression.Located):
     path: MutableSequence[str]
     type: expression.Type
     value: expression.Expression
-    def __init__(self, *, path: Iterable[str] = ..., type: expression.Type | None = ..., value: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
+    condition: expression.Expression | None
+    def __init__(self, *, path: Iterable[str] = ..., type: expression.Type | None = ..., value: expression.Expression | None = ..., condition: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
 class ServiceClient(expression.Located):
     """A service that the node calls."""

@@ -30,18 +30,26 @@ from robosc.synthesis.encoding import BitLayout, Encoding
 from robosc.synthesis.fixpoint import SupervisedStates, reachable, supervise, supervise_only
 from robosc.synthesis.guards import Permission, permission
 from robosc.synthesis.projection import Projection
-from robosc.synthesis.relation import EventRelation, event_relations, plant_moves, required_moves, steps, violations
+from robosc.synthesis.relation import (
+    EventRelation,
+    event_relations,
+    goals,
+    plant_moves,
+    required_moves,
+    steps,
+    violations,
+)
 from robosc.synthesis.run_to_completion import completion, internal_events
 from robosc.synthesis.statistics import Phase, Statistics
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from robosc.synthesis.bdd import Diagram
-    from robosc.synthesis.relation import Move
+    from robosc.synthesis.relation import Goal, Move
 
     T = TypeVar("T")
-    _Supervising = Callable[[Encoding, Sequence[Move], Diagram], SupervisedStates]
+    _Supervising = Callable[[Encoding, Sequence[Move], Diagram, Iterable[Goal]], SupervisedStates]
 
 __all__ = [
     "MEMORY",
@@ -133,9 +141,10 @@ def synthesize(
     """Synthesize the maximally permissive, controllable, non-blocking supervisor of a valid model.
 
     The model is not changed. `sct.ecore` documents the meaning of plants, events and expressions. Inputs are parameters
-    of their event: an uncontrollable event stays controllable for all of their values; a marked state is reachable for
-    some of them. `memory` is the limit of the decision diagrams in bytes. The diagrams grow as needed; beyond the
-    limit, MemoryError is raised. Pass new `statistics` to follow the progress from another thread.
+    of their event: an uncontrollable event stays controllable for all of their values; a marked state, and a state that
+    a requirement wants to be reachable, is reachable for some of them. `memory` is the limit of the decision diagrams
+    in bytes. The diagrams grow as needed; beyond the limit, MemoryError is raised. Pass new `statistics` to follow the
+    progress from another thread.
 
     Raises a located ModelError if synthesis does not support the model: doubles, strings, and inputs of a controllable
     event.
@@ -262,7 +271,8 @@ def _solve(
         if not is_from_cif(model):
             uncontrolled = reachable(diagrams, steps(plant_moves(relations)), encoding.initial, diagrams.true)
         violating = diagrams.any_of(violations(model, relations, encoding).values())
-        return _Solution(encoding, relations, supervising(encoding, moves, violating), uncontrolled)
+        states = supervising(encoding, moves, violating, goals(model, encoding).values())
+        return _Solution(encoding, relations, states, uncontrolled)
 
 
 def _uncontrolled_states(solution: _Solution) -> int | None:

@@ -6,7 +6,9 @@ Saturation closes every node of the state set under the events that touch nothin
 part that it touches, not on the whole set.
 
 The synthesis algorithm is that of Ouedraogo, Kumar, Malik, Åkesson: Nonblocking and safe control of discrete-event
-systems modeled as extended finite automata, T-ASE 2011, on reachable states only.
+systems modeled as extended finite automata, T-ASE 2011, on reachable states only. Other states can be goals beside the
+marked ones, as in Queiroz, Cury, Wonham: Multitasking supervisory control of discrete-event systems, Discrete Event
+Dynamic Systems 2005. A goal may apply to some states only.
 """
 
 from __future__ import annotations
@@ -18,10 +20,10 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 
 from robosc.synthesis.acceleration import Acceleration
-from robosc.synthesis.relation import SymbolicStep, join_steps
+from robosc.synthesis.relation import Goal, SymbolicStep, join_steps
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from robosc.synthesis.bdd import Diagram, Diagrams
     from robosc.synthesis.encoding import Element, Encoding
@@ -47,9 +49,9 @@ class SupervisedStates:
     """Result of the fixpoint.
 
     `rounds` are the remaining good states of each round, from all that are reachable under the requirements to the
-    final ones. `alive` are, for the same round, the states that reach a marked state within the good ones without a
-    state that violates an invariant; a violating state is never alive. Both lists are empty if no explanations are
-    needed. `controlled` are the states that are reachable under the supervisor; none if the supervisor is empty.
+    final ones. `alive` are, for the same round, the states that reach each of their goals within the good ones through
+    alive states only; a violating state is never alive. Both lists are empty if no explanations are needed.
+    `controlled` are the states that are reachable under the supervisor; none if the supervisor is empty.
     """
 
     rounds: list[Diagram]
@@ -263,14 +265,31 @@ def coreachable(diagrams: Diagrams, steps: Sequence[SymbolicStep], states: Diagr
     return _Saturation(diagrams, steps, forwards=False).closure(states, within)
 
 
-def supervise(encoding: Encoding, moves: Sequence[Move], violating: Diagram) -> SupervisedStates:
+def keep_alive(diagrams: Diagrams, steps: Sequence[SymbolicStep], goals: Sequence[Goal], allowed: Diagram) -> Diagram:
+    """Return the largest set of allowed states in which each state reaches its goals within the set."""
+    unchanged = 0
+    while True:
+        for goal in goals:
+            reaching = coreachable(diagrams, steps, goal.states & allowed, allowed)
+            alive = reaching if goal.premise.valid() else allowed & (reaching | ~goal.premise)
+            unchanged = unchanged + 1 if alive == allowed else 1
+            allowed = alive
+            if unchanged >= len(goals):
+                return allowed
+
+
+def supervise(
+    encoding: Encoding, moves: Sequence[Move], violating: Diagram, goals: Iterable[Goal] = ()
+) -> SupervisedStates:
     """Compute the states of the maximally permissive, controllable, non-blocking supervisor.
 
-    `moves` are all events under the requirements. `violating` are the forbidden states.
+    `moves` are all events under the requirements. `violating` are the forbidden states. `goals` are further goals
+    beside the marked states.
     """
     steps = [step for _, step in moves]
     uncontrollable = [step for relation, step in moves if not relation.event.controllable]
-    diagrams, initial, marked = encoding.diagrams, encoding.initial, encoding.all_marked
+    diagrams, initial = encoding.diagrams, encoding.initial
+    goals = [Goal(diagrams.true, encoding.all_marked), *goals]
     statistics = diagrams.statistics
     good = reachable(diagrams, steps, initial, diagrams.true)
     rounds = [good]
@@ -279,8 +298,8 @@ def supervise(encoding: Encoding, moves: Sequence[Move], violating: Diagram) -> 
         statistics.rounds += 1
         statistics.states = encoding.count(good)
         allowed = good & ~violating
-        # If all remaining states were alive, they still are: none needs a removed state to reach a marked one.
-        alive.append(good if alive and good == alive[-1] else coreachable(diagrams, steps, marked & allowed, allowed))
+        # If all remaining states were alive, they still are: none needs a removed state to reach a goal.
+        alive.append(good if alive and good == alive[-1] else keep_alive(diagrams, steps, goals, allowed))
         blocked = good & ~alive[-1]
         if not blocked.satisfiable():
             break
@@ -293,15 +312,18 @@ def supervise(encoding: Encoding, moves: Sequence[Move], violating: Diagram) -> 
     return SupervisedStates(rounds, alive, reachable(diagrams, steps, initial & good, good))
 
 
-def supervise_only(encoding: Encoding, moves: Sequence[Move], violating: Diagram) -> SupervisedStates:
+def supervise_only(
+    encoding: Encoding, moves: Sequence[Move], violating: Diagram, goals: Iterable[Goal] = ()
+) -> SupervisedStates:
     """Compute the same controlled states faster, without the rounds that explanations need.
 
-    States that violate an invariant are removed before the first search for states that reach a marked one. The
+    States that violate an invariant are removed before the first search for states that reach their goals. The
     remaining states are mostly final.
     """
     steps = [step for _, step in moves]
     uncontrollable = [step for relation, step in moves if not relation.event.controllable]
     diagrams, initial = encoding.diagrams, encoding.initial
+    goals = list(goals)
     statistics = diagrams.statistics
     reached = good = reachable(diagrams, steps, initial, diagrams.true)
     bad, alive = good & violating, diagrams.false
@@ -310,10 +332,10 @@ def supervise_only(encoding: Encoding, moves: Sequence[Move], violating: Diagram
         statistics.states = encoding.count(good)
         if bad.satisfiable():
             good &= ~coreachable(diagrams, uncontrollable, bad, good)
-        # The states that were alive still are: none needs a removed state to reach a marked one.
+        # The states that were alive still are: none needs a removed state to reach a goal.
         if good == alive:
             break
-        alive = coreachable(diagrams, steps, encoding.all_marked & good, good)
+        alive = keep_alive(diagrams, steps, [Goal(diagrams.true, encoding.all_marked), *goals], good)
         bad = good & ~alive
         if not bad.satisfiable():
             break

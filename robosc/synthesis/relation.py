@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from robosc.model import sct
 from robosc.model.semantics.edges import edges_by_event
@@ -18,6 +18,13 @@ if TYPE_CHECKING:
     from robosc.synthesis.encoding import Element, Encoding
 
     Move = tuple["EventRelation", "SymbolicStep"]
+
+
+class Goal(NamedTuple):
+    """States that must stay reachable from each state with the premise. The marked states are one for all states."""
+
+    premise: Diagram
+    states: Diagram
 
 
 @dataclass(frozen=True)
@@ -291,6 +298,14 @@ def violations(
                 for requirement, permission in relation.permissions.items()
             )
     return violating
+
+
+def goals(model: sct.SupervisoryControlModel, encoding: Encoding) -> dict[sct.ReachabilityRequirement, Goal]:
+    """Return the goal of each requirement that demands one."""
+    return {
+        required: Goal(encoding.holds(required.premise), encoding.holds(required.condition))
+        for required in model.reachabilityRequirements
+    }
 
 
 def requirements_by_event(requirements: Iterable[sct.Requirement]) -> dict[sct.Event, list[sct.Requirement]]:

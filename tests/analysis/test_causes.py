@@ -1,11 +1,13 @@
 """Causes come before their consequences, and hints name the text to write and the command to run."""
 
+import json
+
 import pytest
 
 import robosc
-from robosc.analysis.explain import Renderer, emptiness, explore, find_event, possibility
+from robosc.analysis.explain import Renderer, data_of, emptiness, explore, find_event, possibility
 from robosc.analysis.supervise import EmptySupervisorError, supervise
-from robosc.base.diagnostics import Diagnostic, in_order
+from robosc.base.diagnostics import Diagnostic, as_json, as_sarif, in_order
 
 #: A drill goes down between two feeds. Its cover can be opened at any time, so it never may go down.
 TURNS = """robot Drill {
@@ -103,6 +105,27 @@ def test_the_cause_comes_first() -> None:
     assert {finding.hint for finding in others} == {"correct the cause in line 29 first"}
 
 
+def test_consequences_stand_after_their_own_cause() -> None:
+    """The finding about `stray` is independent. It stands after the consequences of the one before it."""
+    independent = "component Extra { behaviour { initial marked state home { } state stray { } } } }"
+    found = findings(TURNS.rstrip().removesuffix("}") + independent)
+    assert [finding.follows for finding in found] == [0, 1, 1, 1, 2, 2, 0]
+    assert "`Extra` is never in `stray`" in found[-1].message
+
+
+def test_programs_get_the_place_of_the_cause() -> None:
+    found = findings(TURNS)
+    cause, *others = json.loads(as_json.render(found))
+    assert (cause["follows"], cause["related"]) == (0, [])
+    place = {key: cause[key] for key in ("file", "line", "column", "end_line", "end_column")}
+    assert all(finding["follows"] > 0 for finding in others)
+    assert all(finding["related"] == [{**place, "message": "the cause of this finding"}] for finding in others)
+    first, *later = json.loads(as_sarif.render(found, "1"))["runs"][0]["results"]
+    for result in later:
+        (related,) = result["relatedLocations"]
+        assert related["physicalLocation"] == first["locations"][0]["physicalLocation"]
+
+
 def test_the_hint_says_what_to_write_and_to_run() -> None:
     cause, *_ = findings(TURNS)
     assert cause.hint == (
@@ -141,3 +164,24 @@ def test_a_guard_of_a_component_is_named() -> None:
     assert [note.details for note in found.stuck if "Mains" in note.text] == [
         ("its transition on response from `Mains.back` requires `Boom.parked`",)
     ]
+
+
+def test_explanations_name_each_requirement_once() -> None:
+    text = """robot Press {
+      component Ram {
+        outgoing message hit with type: none
+        incoming message rise with type: none
+        incoming message lift with type: none
+        behaviour {
+          initial marked state up { on response from hit goto down }
+          state down { on response from hit on request to rise goto up on request to lift goto up }
+        }
+      }
+      requirement Lock: automaton { initial state locked { on request to rise if Ram.up on request to lift if Ram.up } }
+    }"""
+    model = robosc.to_sct(robosc.load(text=text))
+    answer = explore(model, emptiness)
+    (note,) = answer.blamed
+    assert note.details == ("forbids the request to `Ram.rise`", "forbids the request to `Ram.lift`")
+    (loosening,) = data_of(answer, lambda _: {})["loosenings"]
+    assert loosening["texts"] == ["requirement Lock: automaton"]

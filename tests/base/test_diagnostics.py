@@ -176,6 +176,8 @@ def test_json() -> None:
             "rule": "type",
             "message": "wrong",
             "hint": "write `0.0`",
+            "follows": 0,
+            "related": [],
             "edits": [{"line": 1, "column": 1, "end_line": 1, "end_column": 2, "text": "0.0"}],
             "alternatives": [],
         },
@@ -189,6 +191,8 @@ def test_json() -> None:
             "rule": "unique-topic",
             "message": "wrong",
             "hint": None,
+            "follows": 0,
+            "related": [],
             "edits": [],
             "alternatives": [
                 {

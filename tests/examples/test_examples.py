@@ -18,7 +18,7 @@ from .conftest import EXAMPLES, MODELS, PAGES, SCENARIOS, SHOWCASES, models_of
 GUARDS = Path(__file__).with_name("guards")
 #: Targets for controllers with services or actions, and targets for controllers with messages only.
 ALL, MESSAGES = "cif,supervisor,xmi", "cif,supervisor,xmi,ros1,ros2"
-#: The packages of detectors and of Nav2 are not installed everywhere.
+#: The packages of detectors are not installed everywhere.
 EXPECTED = {"interface-unknown"}
 EACH = pytest.mark.parametrize("name", slow_but((name for name in MODELS if name not in SHOWCASES), MODELS))
 #: Events that synthesis restricts beyond the requirements.

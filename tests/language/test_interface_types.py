@@ -224,3 +224,27 @@ def test_needed_integers_without_range(tmp_path: Path, interfaces: RosTypes) -> 
     ((rule, _, hint),) = findings(tmp_path, interfaces, text)
     assert rule == "integer-range"
     assert hint == "ROS defines it: declare an object in its place, with a `data: integer(0..100)`"
+
+
+def test_type_that_only_ros_2_has(tmp_path: Path) -> None:
+    text = """
+        robot R {
+          component C {
+            outgoing message scan with type: sensor_msgs/LaserScan
+            action grip with request: none, response: control_msgs/ParallelGripperCommand, feedback: none
+            behaviour {
+              variable number: integer
+              variable reached: boolean
+              on response from scan do number := value.header.seq
+              on response from grip do reached := value.reached_goal
+              initial marked state idle { }
+            }
+          }
+        }
+    """
+    ((rule, message, hint),) = findings(tmp_path, RosTypes(), text)
+    assert rule == "interface-mix"
+    assert "`grip` fits ROS 2 only" in message
+    assert hint is not None
+    assert hint.endswith("in ROS 1, there is no control_msgs/ParallelGripperCommand")
+    assert findings(tmp_path, RosTypes(), text.replace("header.seq", "header.stamp.nanosec")) == []

@@ -411,6 +411,8 @@ FOREIGN = [
         "robot R { component C { behaviour { variable x: boolean = if true 1 else 2 } } }",
         "write `if condition then value",
     ),
+    ("robot R { provide m with { x: 1 } if C.s else { x: 2 } }", "write `if condition then value"),
+    ("robot R { provide m with if C.s then { x: 1 } }", "write `if condition then value"),
     (
         "robot R { component C { behaviour { initial marked state s { on error from m else goto s } } } }",
         "a transition for each case",

@@ -142,7 +142,7 @@ def test_the_wrong_folder_of_a_ros_type_is_reported() -> None:
 def test_the_type_of_an_interface(written: str, usual: str) -> None:
     content = gate(definitions=f"interface ask {written}", link="links ask")
     assert messages(content) == []
-    assert formatted(content) == formatted(content.replace(written, usual))
+    assert usual in formatted(content)
     interface = read(Path("g.rscd"), documents=Documents({"g.rscd": content})).base.definitions[0]
     assert (interface.package, interface.type) == ("std_srvs", "Trigger")
 

@@ -1,5 +1,6 @@
 """Synthesis by the definition: one state at a time, over sets. Deliberately slow and independent of the tool."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
@@ -194,22 +195,19 @@ class Oracle:
             ]
             for state in good
         }
-        while True:
-            kept = {state for state in good if not self.violates(state)}
-            alive = {state for state in kept if self.is_marked(state)}
-            grown = True
-            while grown:
-                more = {s for s in kept - alive if any(after in alive for _, after in next_states[s])}
-                alive |= more
-                grown = bool(more)
-            kept = {
+        before = None
+        while good != before:
+            before = good
+            good = {state for state in good if not self.violates(state)}
+            good &= reaching(good, next_states, self.is_marked)
+            for required in self.model.reachabilityRequirements:
+                reach = reaching(good, next_states, lambda state, goal=required: self.value(goal.condition, state, {}))
+                good = {state for state in good if state in reach or not self.value(required.premise, state, {})}
+            good = {
                 state
-                for state in alive
-                if all(event.controllable or after in alive for event, after in next_states[state])
+                for state in good
+                if all(event.controllable or after in good for event, after in next_states[state])
             }
-            if kept == good:
-                break
-            good = kept
         return self.reach(self.initial, requirements=True, within=good) if self.initial in good else set()
 
     def allows(self, event: sct.Event, state: State) -> bool:
@@ -218,6 +216,16 @@ class Oracle:
         return (
             bool(after) and self.required(event, state) and all(state_after in self.controlled for state_after in after)
         )
+
+
+def reaching(
+    states: set[State], next_states: dict[State, list[tuple[sct.Event, State]]], is_goal: Callable[[State], bool]
+) -> set[State]:
+    """Return the states that reach a goal without leaving the set."""
+    found = {state for state in states if is_goal(state)}
+    while more := {s for s in states - found if any(after in found for _, after in next_states[s])}:
+        found |= more
+    return found
 
 
 def values_of(kind: ex.Type) -> list[Any]:

@@ -1,4 +1,4 @@
-// Commands with their verdicts, other enabled events, and requirements.
+// Commands with their verdicts, other enabled events, findings and requirements.
 
 import type { Beside, Description, Event, Explanation, Input, Place, Value } from "./data";
 import { byId, html, worded } from "./elements";
@@ -38,6 +38,12 @@ export class CommandsView {
       requirements.append(html("li", {}, link));
     }
     byId("requirements-section", HTMLElement).hidden = description.requirements.length === 0;
+    const findings = byId("findings", HTMLUListElement);
+    for (const finding of description.findings) {
+      const link = html("button", { type: "button", class: "link", onclick: () => goTo(finding.place) }, ...worded(finding.message));
+      findings.append(html("li", { class: finding.follows ? "follows" : "" }, link, html("p", { class: "reason" }, ...worded(finding.hint))));
+    }
+    byId("findings-section", HTMLElement).hidden = description.findings.length === 0;
     const events = byId("events", HTMLUListElement);
     for (const [name, event] of Object.entries(description.events)) {
       if (description.commands.includes(name)) continue;

@@ -76,6 +76,14 @@ export interface Requirement {
   place: Place | null;
 }
 
+export interface Finding {
+  message: string;
+  hint: string;
+  /** Whether it is a consequence of a finding before it. */
+  follows: boolean;
+  place: Place | null;
+}
+
 export interface Endpoint {
   name: string;
   kind: string;
@@ -94,6 +102,7 @@ export interface Description {
   events: Record<string, Event>;
   commands: string[];
   requirements: Requirement[];
+  findings: Finding[];
   communication: Endpoint[];
   files: { name: string; lines: [string, string][][] }[];
 }

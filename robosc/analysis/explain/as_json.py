@@ -93,7 +93,7 @@ def _loosenings(loosenings: tuple[Loosening, ...] | None, at: At) -> list[dict[s
     return [
         {
             **at(loosening.requirements[0]),
-            "texts": [own.text for own in loosening.requirements],
+            "texts": list(dict.fromkeys(own.text for own in loosening.requirements)),
             "states": loosening.states,
         }
         for loosening in loosenings

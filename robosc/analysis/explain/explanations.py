@@ -21,7 +21,7 @@ from robosc.analysis.explain.answers import (
 from robosc.analysis.explain.obstacles import Obstacles
 from robosc.analysis.paths import Path, shortest_path
 from robosc.analysis.system import ExplainedSystem, SynthesizedSystem, whole_state
-from robosc.analysis.wording import join_with_and, name, words
+from robosc.analysis.wording import goal_in_words, join_with_and, name, words
 from robosc.engine import Blocked
 from robosc.model import sct
 from robosc.model.semantics.edges import edges_from
@@ -150,15 +150,24 @@ def _way(system: SynthesizedSystem, start: Codes, allowed: Diagram) -> tuple[Tra
 
 
 def find_culprits(system: SynthesizedSystem, end: Codes) -> list[Note]:
-    """Return the invariants that a state violates, else the requirements that forbid something after it."""
-    violated = [
-        Note(requirement, requirement.text or "a requirement", ("forbids this state",))
-        for requirement in system.violated(end)
+    """Return the invariants that a state violates, else the requirements that forbid something after it.
+
+    A requirement whose states are unreachable from there comes first. Each requirement of the text has one note.
+    """
+    goals = {requirement: goal_in_words(requirement) for requirement in system.violated(end)}
+    details: dict[tuple[object, str], tuple[sct.StatedRequirement, dict[str, None]]] = {}
+    reasons: list[tuple[sct.StatedRequirement, str]] = [
+        (requirement, f"needs a way to a {goal}" if goal else "forbids this state")
+        for requirement, goal in goals.items()
     ]
-    return violated or [
-        Note(requirement, requirement.text or "a requirement", (f"forbids the {words(requirement.event)}",))
-        for requirement in forbidden_from(system, end)
-    ]
+    if None not in goals.values():
+        forbidding = forbidden_from(system, end)
+        reasons += [(requirement, f"forbids the {words(requirement.event)}") for requirement in forbidding]
+    for requirement, reason in reasons:
+        text = requirement.text or "a requirement"
+        _, known = details.setdefault((requirement.source or requirement, text), (requirement, {}))
+        known[reason] = None
+    return [Note(requirement, text, tuple(known)) for (_, text), (requirement, known) in details.items()]
 
 
 # An event that may never happen

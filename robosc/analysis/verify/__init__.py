@@ -24,6 +24,7 @@ from robosc.analysis.verify.loop_exploration import LoopEffort
 from robosc.analysis.verify.model_reading import validate_model
 from robosc.analysis.verify.properties import properties
 from robosc.analysis.verify.verdict import Outcome, Verdict, measure
+from robosc.base.diagnostics import has_errors
 from robosc.m2t import cif, supervisor
 from robosc.model.semantics.roles import is_from_cif
 from robosc.synthesis import MEMORY, use_encoding
@@ -98,7 +99,7 @@ def validate(models: Models, configuration: Configuration) -> list[Verdict]:
     ]
     verdicts = []
     for questions, target, examine in targets:
-        obstacles = target.preconditions(models, configuration)
+        obstacles = [own for own in target.preconditions(models, configuration) if has_errors([own])]
         verdicts += (
             [Verdict(question, Outcome.SKIPPED, "", obstacles[0].message) for question in questions]
             if obstacles

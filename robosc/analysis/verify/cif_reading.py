@@ -20,7 +20,7 @@ from robosc.model.semantics import cif_types as types
 from robosc.model.semantics.walks import copy_tree
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
 
 class CifError(ValueError):
@@ -31,10 +31,10 @@ class CifError(ValueError):
 class Specification:
     """Content of a specification, with CIF's own names and numbers.
 
-    `model` holds enumerations, plants, requirements and invariants of states. CIF has no kinds of plants and events
-    except requirement automata, and does not relate inputs to events. `supervisor` is the automaton with the conditions
-    that synthesis added, in one location; None if there is none. `alphabet` are its events. `invariants` are the other
-    conditions under the supervisor.
+    `model` holds enumerations, plants, and requirements on events, on states and about reachable states. CIF has no
+    kinds of plants and events except requirement automata, and does not relate inputs to events. `supervisor` is the
+    automaton with the conditions that synthesis added, in one location; None if there is none. `alphabet` are its
+    events. `invariants` are the other conditions under the supervisor.
     """
 
     model: sct.SupervisoryControlModel
@@ -73,7 +73,8 @@ class _GrammarConversion:
     def specification(self) -> Specification:
         """Return the whole specification. Raises CifError."""
         model = sct.SupervisoryControlModel(name="")
-        self._annotated(self._node)
+        required = [node for node in self._node.annotations if type(node).__name__ == "Reachable"]
+        self._check_annotations(annotation for annotation in self._node.annotations if annotation not in required)
         automata: list[tuple[Any, sct.Plant]] = []
         for enumeration in self._of("Enumeration"):
             model.enumerations.append(self._enumeration(enumeration))
@@ -96,6 +97,7 @@ class _GrammarConversion:
             else:
                 invariants[invariant.kind].append(self._exclusion(invariant.restriction))
         model.requirements.extend(invariants["requirement"])
+        model.reachabilityRequirements.extend(map(self._reachability_requirement, required))
         supervisors = [alphabet for alphabet in alphabets if alphabet[0] is supervisor]
         self._check_kinds([declaration for declaration, _ in automata], supervisor)
         for declaration, automaton, _ in supervisors:
@@ -125,12 +127,15 @@ class _GrammarConversion:
 
     def _annotated(self, node: Any) -> Any:
         """Check the annotations of an object and return it."""
-        for annotation in node.annotations:
+        self._check_annotations(node.annotations)
+        return node
+
+    def _check_annotations(self, annotations: Iterable[Any]) -> None:
+        for annotation in annotations:
             if annotation.name.lstrip("@") != "doc":
                 self._fail(annotation, f"there is no annotation {annotation.name}")
             if not annotation.texts:
                 self._fail(annotation, f"{annotation.name} says nothing")
-        return node
 
     # Declarations
 
@@ -298,6 +303,17 @@ class _GrammarConversion:
             invariant.name = _plain(node.name)
             self._define(invariant, node.name, self._outer)
         return invariant
+
+    def _reachability_requirement(self, node: Any) -> sct.ReachabilityRequirement:
+        last = node.premise or node.condition
+        closings = (last.others[-1].operand if last.others else last.first).closings
+        if [closing.token for closing in closings][-1:] != [")"]:
+            self._fail(node, "the annotation has no closing parenthesis")
+        del closings[-1]
+        return sct.ReachabilityRequirement(
+            condition=self._condition(node.condition, None),
+            premise=self._condition(node.premise, None) if node.premise else None,
+        )
 
     def _exclusion(self, node: Any) -> sct.Requirement:
         return sct.Requirement(

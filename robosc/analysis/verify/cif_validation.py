@@ -102,12 +102,15 @@ class _Comparison:
             raise CifError("it has statements of a supervisor")
         if supervised and specification.model.invariants:
             raise CifError("it has an invariant requirement, which no supervised specification has")
+        if supervised and specification.model.reachabilityRequirements:
+            raise CifError("it has a requirement about reachable states, which no supervised specification has")
         self._model = model
         self._correspondence = correspondence
         self._supervised = supervised
         self._text = TEXT if supervised else UNSUPERVISED
         self._requirements = requirements_by_event(model.requirements)
         self._their_invariants = list(specification.model.invariants)
+        self._their_goals = list(specification.model.reachabilityRequirements)
         self._invariants = requirements_by_event([*specification.invariants, *specification.model.requirements])
         self._layout = BitLayout(model)
         self._inputs = [domain for domain in self._layout.domains.values() if isinstance(domain.element, sct.Input)]
@@ -142,7 +145,9 @@ class _Comparison:
         }
         if any(code != encoding.initial_codes[element] for element, code in initial.items()):
             return refute(PROPERTY, f"at the start {different(initial, encoding.initial_codes, self._text)}")
-        fault = None if self._supervised else self._invariants_differ(system, theirs)
+        fault = None
+        if not self._supervised:
+            fault = self._invariants_differ(system, theirs) or self._goals_differ(system, theirs)
         if fault is not None:
             return fault
         differences = list(self._differences(system, theirs))
@@ -176,6 +181,23 @@ class _Comparison:
             element for invariant in self._model.invariants for element in referenced_elements(invariant.condition)
         )
         return refute(PROPERTY, f"by its invariants {self._text} {allowed} the state `{system.where(codes, elements)}`")
+
+    def _goals_differ(self, system: GuardedSystem, theirs: Encoding) -> Verdict | None:
+        """Return a refutation if CIF requires other states to be reachable; None if they agree."""
+        encoding, required = system.encoding, self._model.reachabilityRequirements
+        if len(required) != len(self._their_goals):
+            count = format_count(len(self._their_goals), "requirement")
+            return refute(PROPERTY, f"{self._text} has {count} about reachable states, the model has {len(required)}")
+        valid = encoding.diagrams.all_of(encoding.in_domain(domain.element) for domain in self._layout.state)
+        for ours, other in zip(required, self._their_goals, strict=True):
+            for part, counterpart in ((ours.condition, other.condition), (ours.premise, other.premise)):
+                differ = (encoding.holds(part) ^ theirs.holds(counterpart)) & valid
+                if differ.satisfiable():
+                    codes = pick(differ, self._layout.state)
+                    elements = [*referenced_elements(ours.condition), *referenced_elements(ours.premise)]
+                    shown = system.where(codes, elements)
+                    return refute(PROPERTY, f"a requirement about reachable states differs in the state `{shown}`")
+        return None
 
     @staticmethod
     def _initial(counterpart: sct.DiscreteVariable, theirs: Encoding) -> int:

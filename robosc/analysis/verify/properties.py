@@ -62,6 +62,7 @@ def properties(system: GuardedSystem) -> list[Callable[[], Verdict]]:
         *(partial(_examine_statement, requirement_holds, system, statement) for statement in written),
         *([partial(ranges, system)] if len(written) < len(system.model.requirements) else []),
         *(partial(_examine_statement, invariant_holds, system, statement) for statement in system.model.invariants),
+        *(partial(_examine_statement, goal_reachable, system, own) for own in system.model.reachabilityRequirements),
         *(partial(_examine_statement, claim_holds, system, statement) for statement in system.model.properties),
         *([] if stepwise else [partial(no_dead_events, system)]),
         *([] if stepwise or not _cancelable(system) else [partial(cancel_when_due, system)]),
@@ -217,6 +218,11 @@ def claim_holds(system: GuardedSystem, claimed: sct.Property) -> Verdict:
     if isinstance(claimed, sct.InvariantProperty):
         return invariant_holds(system, claimed)
     assert isinstance(claimed, sct.ReachabilityProperty)
+    return goal_reachable(system, claimed)
+
+
+def goal_reachable(system: GuardedSystem, claimed: sct.ReachabilityProperty | sct.ReachabilityRequirement) -> Verdict:
+    """Check that every reachable state with the premise can reach a state with the condition."""
     states = system.controlled
     start, goal = states & system.encoding.holds(claimed.premise), states & system.encoding.holds(claimed.condition)
     stuck = {claimed: start & ~coreachable(system.diagrams, steps(system.moves), goal, states)}
@@ -278,7 +284,9 @@ def cancel_when_due(system: GuardedSystem) -> Verdict:
 
 def maximal_permissiveness(system: GuardedSystem) -> Verdict:
     """Check that every guard forbids a controllable event only where any supervisor must."""
-    required = supervise(system.encoding, required_moves(system.relations.values()), system.violating).controlled
+    required = supervise(
+        system.encoding, required_moves(system.relations.values()), system.violating, system.goals.values()
+    ).controlled
     controllable = [relation for relation in system.relations.values() if relation.event.controllable]
     needless = {
         relation: system.controlled & _permitted(relation, required) & ~system.allowed[relation.event]

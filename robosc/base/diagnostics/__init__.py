@@ -86,7 +86,8 @@ class Diagnostic:
 
     `hint` explains how to fix it. If exactly one fix can be applied automatically, `edits` apply it in the finding's
     file. If the user must choose, `alternatives` are the fixes. `related` are further places. `follows` is the number
-    of steps in the chain from the original finding to this consequence, or 0.
+    of steps in the chain from the original finding to this consequence, or 0. The first related place of a consequence
+    is that of the original finding.
     """
 
     file: str
@@ -110,12 +111,13 @@ class ModelError(Exception):
 
 
 def in_order(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Return each finding once, sorted by file, position and rule; causes come before their consequences."""
+    """Return each finding once, sorted by file, position and rule; consequences stand after their original finding."""
     return sorted(
         dict.fromkeys(findings),
         key=lambda finding: (
-            finding.file,
+            *_original_place(finding),
             finding.follows,
+            finding.file,
             finding.span,
             finding.rule,
             finding.message,
@@ -124,6 +126,12 @@ def in_order(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
             finding.alternatives,
         ),
     )
+
+
+def _original_place(finding: Diagnostic) -> tuple[str, Span]:
+    """Return the place of a finding, or that of the original one if it is a consequence."""
+    original = finding.related[0] if finding.follows and finding.related else finding
+    return original.file, original.span
 
 
 def has_errors(findings: Iterable[Diagnostic]) -> bool:

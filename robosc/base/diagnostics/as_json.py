@@ -29,6 +29,8 @@ def _object(finding: Diagnostic) -> dict[str, Any]:
         "rule": finding.rule,
         "message": finding.message,
         "hint": finding.hint,
+        "follows": finding.follows,
+        "related": [{"file": other.file, **_place(other.span), "message": other.message} for other in finding.related],
         "edits": _edits(finding.edits),
         "alternatives": [{"title": way.title, "edits": _edits(way.edits)} for way in finding.alternatives],
     }

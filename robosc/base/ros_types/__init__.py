@@ -1,7 +1,7 @@
 """Definitions of ROS messages, services and actions, for ROS 1 and ROS 2.
 
 A definition is searched in the folders of the call, in those of ROBOSC_INTERFACE_PATH, in the ROS installation of the
-computer, and among the standard types. Both ROS versions are searched, because they differ in some types.
+computer, and among the shipped types. Both ROS versions are searched, because they differ in some types.
 """
 
 from __future__ import annotations
@@ -33,16 +33,23 @@ MAKE_KNOWN = (
 OWN_OBJECT = "for the data of a service or action, declare an object with the fields that you use and an enum over it"
 #: Default field for a basic value, if its section has several fields.
 _DATA = "data"
+#: Shipped definitions. Types that are the same in both ROS versions are in the folder `both`.
 _SHIPPED = locate("base/ros_types/definitions")
+_SHIPPED_FOLDERS = {"ROS 2": ("ros2", "both"), "ROS 1": ("ros1", "both")}
 
 
 class RosDistribution:
     """All types of one ROS version."""
 
-    def __init__(self, ros: str, folders: Iterable[Share]) -> None:
-        """Search the folders of `ros` (`ROS 1` or `ROS 2`) in their order; the first one with a type counts."""
+    def __init__(self, ros: str, own: Iterable[Share], installed: Iterable[Share]) -> None:
+        """Search the user's own folders of `ros` (`ROS 1` or `ROS 2`), then the installation, then shipped definitions.
+
+        The first folder with a type counts.
+        """
         self.name = ros
-        self._folders = list(folders)
+        self._installed = list(installed)
+        self._folders = [*own, *self._installed]
+        self._shipped = [Share(_SHIPPED / folder) for folder in _SHIPPED_FOLDERS[ros]]
         self._known: dict[tuple[str, str, Section], Fields | None] = {}
         self._named: dict[tuple[str, str], list[str]] = {}
 
@@ -50,7 +57,13 @@ class RosDistribution:
     def _sources(self) -> list[Share | ShippedTypes]:
         from robosc.base.ros_types.rosbags_types import ShippedTypes  # takes long to load
 
-        return [*self._folders, ShippedTypes(self.name)]
+        return [*self._folders, *self._shipped, ShippedTypes(self.name)]
+
+    def _sources_of(self, package: str) -> list[Share | ShippedTypes]:
+        """Return the sources of a package; an installed package needs no shipped definitions."""
+        if any(share.defines(package) for share in self._installed):
+            return [source for source in self._sources if source not in self._shipped]
+        return self._sources
 
     def fields(self, package: str, name: str, section: Section) -> Fields | None:
         """Return the fields of a section of a type, or None if the type is unknown.
@@ -61,7 +74,7 @@ class RosDistribution:
             return None  # Names become parts of paths.
         key = package, name, section
         if key not in self._known:
-            definitions = (source.fields(package, name, section) for source in self._sources)
+            definitions = (source.fields(package, name, section) for source in self._sources_of(package))
             self._known[key] = next((fields for fields in definitions if fields is not None), None)
         return self._known[key]
 
@@ -94,7 +107,9 @@ class RosDistribution:
         """Return the known types of a kind (`message`, `service`, `action`) in a package, sorted by name."""
         key = package, kind
         if key not in self._named:
-            self._named[key] = sorted({name for source in self._sources for name in source.names(package, kind)})
+            self._named[key] = sorted(
+                {name for source in self._sources_of(package) for name in source.names(package, kind)}
+            )
         return self._named[key]
 
     def packages(self) -> set[str]:
@@ -117,10 +132,7 @@ class RosTypes:
         }
         #: ROS 2, then ROS 1.
         self._workspaces = {ros: [Workspace(folder, ros) for folder in folders] for ros in installed}
-        self.distributions = [
-            RosDistribution(ros, [*self._workspaces[ros], *shares, Share(_SHIPPED)])
-            for ros, shares in installed.items()
-        ]
+        self.distributions = [RosDistribution(ros, self._workspaces[ros], shares) for ros, shares in installed.items()]
 
     def distribution(self, ros: int) -> RosDistribution:
         """Return the types of ROS 1 or ROS 2."""

@@ -57,13 +57,13 @@ class Share:
         """Return the names of all packages that define types."""
         return self._packages
 
+    def defines(self, package: str) -> bool:
+        """Return whether a package defines types."""
+        return any(_defines_types(root) for root in self.roots(package))
+
     @cached_property
     def _packages(self) -> list[str]:
-        if not self._folder.is_dir():
-            return []
-        return [
-            path.name for path in self._folder.iterdir() if any((path / folder).is_dir() for folder in FOLDERS.values())
-        ]
+        return [path.name for path in self._folder.iterdir() if _defines_types(path)] if self._folder.is_dir() else []
 
     def roots(self, package: str) -> list[Path]:
         """Return the folders of a package."""
@@ -138,6 +138,10 @@ class Workspace(Share):
     def _fits(self, manifest: str) -> bool:
         meant = [ros for ros, words in _BUILT_FOR.items() if words.search(manifest)]
         return self._ros in (meant or _BUILT_FOR)
+
+
+def _defines_types(root: Path) -> bool:
+    return any((root / folder).is_dir() for folder in FOLDERS.values())
 
 
 def _sections(path: Path, package: str, section: Section) -> list[Fields]:

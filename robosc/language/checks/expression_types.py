@@ -31,7 +31,7 @@ from robosc.model.semantics.typing import (
     is_number,
     operator_type,
 )
-from robosc.model.semantics.walks import fold, operands
+from robosc.model.semantics.walks import branches, fold, operands
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -101,6 +101,9 @@ class ExpressionCheck:
         """Report provided data unless it has this type; the properties of an object value are checked one by one."""
         if isinstance(expected, EnumType) or expected == NONE:
             expected = UNKNOWN  # `data-type` and `data-provisioning` report this.
+        if isinstance(value, ex.Conditional) and _is_structured(value, expected):
+            self._expect_choice(value, expected, what)
+            return
         if isinstance(value, rsc.ArrayLiteral):
             if expected != UNKNOWN and not isinstance(expected, ArrayType):
                 self.report(value, f"{what} must be {expected}, found an array", repair(value, UNKNOWN, expected))
@@ -117,6 +120,16 @@ class ExpressionCheck:
         for field in value.properties:
             name = f"the value of property `{field.property.name}`" if field.property else "the value"
             self.expect_data(field.value, declared_type(field.property.type) if field.property else UNKNOWN, name)
+
+    def _expect_choice(self, choice: ex.Conditional, expected: Type, what: str) -> None:
+        pending: list[ex.Expression | None] = [choice]
+        while pending:
+            branch = pending.pop()
+            if isinstance(branch, ex.Conditional):
+                self.expect(branch.condition, BOOLEAN, "the condition after `if`")
+                pending += [branch.otherwise, branch.then]
+            else:
+                self.expect_data(branch, expected, what)
 
     def type(self, expression: ex.Expression | None) -> Type:
         """Return the type of the expression and report faults within it; UNKNOWN if it is faulty itself."""
@@ -276,6 +289,14 @@ class ExpressionCheck:
 def _inside(expression: ex.Expression | None) -> list[ex.Expression]:
     """Return the operands to check; literals of objects and arrays are findings themselves."""
     return [] if isinstance(expression, rsc.ObjectValue | rsc.ArrayLiteral) else operands(expression)
+
+
+def _is_structured(choice: ex.Conditional, expected: Type) -> bool:
+    """Return whether a conditional in provided data chooses between objects or arrays."""
+    return isinstance(expected, ArrayType | ObjectType) or any(
+        isinstance(branch, rsc.ObjectValue | rsc.ArrayLiteral) or isinstance(infer(branch), ArrayType | ObjectType)
+        for _, branch in branches(choice)
+    )
 
 
 def names(first: Type, second: Type) -> tuple[str, str]:

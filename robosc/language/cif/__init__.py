@@ -117,7 +117,7 @@ class _Files:
                     self._imports.append((imported, declaration))
 
     def _annotations(self, specification: Any) -> None:
-        """Reject annotations that are requirements, and warn about unknown ones."""
+        """Reject other annotations that are requirements, and warn about unknown ones."""
         for annotation in annotations_of(specification):
             name = annotation.name.lstrip("@")
             if name.startswith(_REQUIRED):

@@ -412,9 +412,42 @@ class _CifToSct:
                 assert predicate is not None
                 initial = type(node).__name__ == "Initial"
                 (self.model.initialPredicates if initial else self.model.markerPredicates).append(predicate)
+        for annotation in (annotation for body in scope.bodies for annotation in getattr(body, "annotations", ())):
+            if type(annotation).__name__ == "Reachable":
+                with self._names.reporting():
+                    self._reachability_requirement(annotation, scope)
         for location, element in _elements(scope):
             with self._names.reporting():
                 self._element(element, location, scope)
+
+    def _reachability_requirement(self, node: Any, scope: Scope) -> None:
+        """Translate an annotation that requires states to be reachable; its names are those of the scope's inside."""
+        is_outermost = type(node.parent).__name__ == "Specification"
+        if node.name.startswith("@@") != is_outermost:
+            sign = "two `@` before the first declaration" if is_outermost else "one `@` before a group or an automaton"
+            raise CifFaultError(node, "cif-construct", f"`{node.name}` stands in a wrong place", f"write {sign}")
+        arguments: dict[str | None, Any] = {}
+        for argument in node.arguments:
+            if argument.name not in (None, "from"):
+                hint = f"leave out `{argument.name}`, or write it as another requirement"
+                raise construct(argument, f"the argument `{argument.name}` of `{node.name}`", hint)
+            if argument.name in arguments:
+                raise CifFaultError(
+                    argument, "cif-construct", f"`{node.name}` has this argument twice", "leave one out"
+                )
+            arguments[argument.name] = argument.value
+        if None not in arguments:
+            message = f"`{node.name}` has no condition"
+            raise CifFaultError(node, "cif-construct", message, "write the condition as its first argument")
+        premise = arguments.get("from")
+        self.model.reachabilityRequirements.append(
+            sct.ReachabilityRequirement(
+                condition=self._values.condition([arguments[None]], scope),
+                premise=None if premise is None else self._values.condition([premise], scope),
+                text=_words(node),
+                source=place_of(node),
+            )
+        )
 
     def _element(self, node: Any, location: sct.Location, scope: Scope) -> None:
         match type(node).__name__:

@@ -75,6 +75,11 @@ class _SctToCif:
         for invariant in self._model.invariants:
             condition = self._condition(invariant.condition)
             model.invariants.append(sct.StateInvariant(name=invariant.name, text=invariant.text, condition=condition))
+        for required in self._model.reachabilityRequirements:
+            condition, premise = self._condition(required.condition), self._condition(required.premise)
+            model.reachabilityRequirements.append(
+                sct.ReachabilityRequirement(text=required.text, condition=condition, premise=premise)
+            )
         if self._model.supervisor is not None:
             model.supervisor = self._supervisor(self._model.supervisor)
         self._refuse()

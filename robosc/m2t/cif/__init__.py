@@ -1,7 +1,7 @@
 """Target `cif`: the plants and requirements of a robot, and the supervised plants, in CIF 3 (thesis 5.2).
 
-The text uses only constructs that the data-based synthesis of Eclipse ESCET accepts from version 5 on; see
-`docs/cif.md`.
+The text uses only constructs that the data-based synthesis of Eclipse ESCET accepts from version 5 on, except
+requirements about reachable states; see `docs/cif.md`.
 """
 
 from __future__ import annotations
@@ -23,7 +23,10 @@ if TYPE_CHECKING:
 
     from robosc.language.configuration import Configuration
     from robosc.m2t.models import Models
+    from robosc.model import sct
 
+#: First versions of CIF's tools that know a requirement about reachable states, without and with a premise.
+_REACHABLE, _REACHABLE_FROM = 10, 13
 _NAME = re.compile("[A-Za-z_][A-Za-z0-9_]*")
 
 
@@ -31,7 +34,7 @@ def preconditions(models: Models, _configuration: Configuration) -> list[Diagnos
     """Return errors of the rule `cif` for everything that CIF cannot express, at its place in the text.
 
     The causes are: no plant, numbers beyond 32 bits, invalid names, and expressions that need too many cases because
-    CIF's synthesis cannot multiply.
+    CIF's synthesis cannot multiply. A requirement that older tools ignore leads to a warning.
     """
     if is_from_cif(models.sct):
         return []
@@ -49,7 +52,17 @@ def preconditions(models: Models, _configuration: Configuration) -> list[Diagnos
         transform(models.sct)
     except ModelError as error:
         findings += error.diagnostics
-    return findings
+    return [*findings, *map(_version_warning, models.sct.reachabilityRequirements)]
+
+
+def _version_warning(required: sct.ReachabilityRequirement) -> Diagnostic:
+    """Return the warning that older tools ignore a requirement or reject its premise."""
+    version = _REACHABLE if required.premise is None else _REACHABLE_FROM
+    message = "tools of CIF before version 10 ignore this requirement in the file without a supervisor"
+    if required.premise is not None:
+        message += ", and those before version 13 reject its `from`"
+    hint = f"synthesize that file with CIF {version} or later; the supervised file is right for every version"
+    return Diagnostic(*place(required), Severity.WARNING, "cif", message, hint)
 
 
 def generate(models: Models, _configuration: Configuration) -> dict[str, str]:

@@ -37,7 +37,8 @@ class Writer:
     def write_plants(self) -> str:
         """Return the plants and the requirements."""
         lines = document([f"The plants and requirements of {self._model.name}."], sign="@@")
-        return fold_lines([*lines, *self._plants("requirement automaton"), *self._requirements()])
+        plants = self._plants("requirement automaton")
+        return fold_lines([*lines, *self._reachability_requirements(), *plants, *self._requirements()])
 
     def write_supervisor(self, supervisor: sct.Supervisor) -> str:
         """Return the plants with their supervisor: its requirements, and an automaton of its additions."""
@@ -103,6 +104,15 @@ class Writer:
             yield ""
         for text, descriptions in texts.items():
             yield from [*document(dict.fromkeys(filter(None, descriptions))), text]
+
+    def _reachability_requirements(self) -> Iterator[str]:
+        """Return the annotations of the specification that are requirements, each after its text."""
+        for required in self._model.reachabilityRequirements:
+            arguments = [self._outside(required.condition)]
+            if required.premise is not None:
+                arguments.append(f"from: {self._outside(required.premise)}")
+            yield from document(filter(None, [required.text]), sign="@@")
+            yield f"@@requirement:reachable({join_by_commas(arguments)})"
 
     def _plant(self, plant: sct.Plant) -> Iterator[str]:
         """Return the contents of a plant."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import groupby
 from typing import TYPE_CHECKING
 
 from robosc.language.configuration.parameters import model_parameters
@@ -107,10 +108,14 @@ class Subscription:
 
 @dataclass(frozen=True)
 class Alternative:
-    """The data of one provide statement under a condition. A field is a writing method, a name and a value."""
+    """The data of one provide statement under a condition.
+
+    The fields are in groups with a condition, None if it is always true. A field is a writing method, a name and a
+    value.
+    """
 
     condition: str
-    fields: list[tuple[str, str, str]]
+    fields: list[tuple[str | None, list[tuple[str, str, str]]]]
 
 
 @dataclass(frozen=True)
@@ -341,7 +346,7 @@ class GeneratedNode:
         messages = [message for publisher in self.publishers for message in publisher.messages]
         messages += [client.request for client in self.clients]
         fields = [field for message in messages for alternative in message.alternatives for field in alternative.fields]
-        return any(method == _HAND_ON for method, _, _ in fields)
+        return any(method == _HAND_ON for _, writings in fields for method, _, _ in writings)
 
     @property
     def reason(self) -> Reasons | None:
@@ -569,15 +574,14 @@ class GeneratedNode:
 
     def _message(self, sending: rosgraph.Sending) -> Message:
         plant: sct.Plant = sending.event.eContainer()
-        values = [field.value for provided in sending.alternatives for field in provided.fields]
-        reads = any(map(reads_elements, values))
+        fields = [field for provided in sending.alternatives for field in provided.fields]
+        reads = any(reads_elements(part) for field in fields for part in (field.condition, field.value) if part)
         return Message(
             self._sent.fresh(self._names.c.member(plant).removeprefix(f"{plant.kind.name}_")),
             self._names.c.enumerator(sending.event),
             self._events[sending.event].remarks,
             [self._alternative(provided) for provided in sending.alternatives],
-            reads
-            or any(_may_be_infinite(field) for alternative in sending.alternatives for field in alternative.fields),
+            reads or any(map(_may_be_infinite, fields)),
             reads,
             [".".join(path) for path in paths_set(sending)] if sending.onChange else None,
             self._handler(sending.event) if sending.event in self._reactions else None,
@@ -587,8 +591,14 @@ class GeneratedNode:
     def _alternative(self, provided: rosgraph.ProvidedData) -> Alternative:
         return Alternative(
             self._names.is_in(provided.location),
-            [self._writing_of(field) for field in provided.fields],
+            [
+                (condition, [self._writing_of(field) for field in fields])
+                for condition, fields in groupby(provided.fields, self._condition_of)
+            ],
         )
+
+    def _condition_of(self, assignment: rosgraph.FieldAssignment) -> str | None:
+        return None if assignment.condition is None else self._printer(assignment.condition)
 
     def _writing_of(self, assignment: rosgraph.FieldAssignment) -> tuple[str, str, str]:
         """Return the method that writes a field, the field's name, and its value."""

@@ -166,6 +166,9 @@ def _remembered(instances: Instances) -> Iterator[tuple[ex.Expression | None, In
         yield claimed.element.condition, claimed.within
         if isinstance(claimed.element, robosc.ReachabilityProperty):
             yield claimed.element.premise, claimed.within
+    for goal in instances.statements(robosc.ReachabilityRequirement):
+        yield goal.element.condition, goal.within
+        yield goal.element.premise, goal.within
     for required in instances.statements(robosc.CommunicationRequirement):
         yield required.element.condition, required.within
     for assumed in instances.statements(robosc.Assumption):

@@ -52,7 +52,7 @@ def definition(graph: rosgraph.RosGraph) -> dict[str, Any]:
             for requirement in graph.model.requirements
             if requirement.text
         ]
-        + [{"text": invariant.text} for invariant in graph.model.invariants if invariant.text],
+        + [{"text": own.text} for own in [*graph.model.invariants, *graph.model.reachabilityRequirements] if own.text],
     }
 
 

@@ -143,6 +143,9 @@ class RoboscPrinter(Printer):
                 return Printed(f"{_name(expression.function)}({', '.join(texts)})")
             case robosc.ArrayLiteral():
                 return Printed(f"[{', '.join(texts)}]")
+            case robosc.ObjectValue():
+                fields = zip((_name(field.property) for field in expression.properties), texts, strict=True)
+                return Printed("{" + ", ".join(f"{name}: {text}" for name, text in fields) + "}")
         return super().write(expression, printed_operands)
 
     def owner(self, component: robosc.Component) -> str:

@@ -145,6 +145,18 @@ def provided_data_type(communication: rsc.CommunicationType | None) -> Type:
     return declared_type(sent_type(communication))
 
 
+def object_value_type(value: rsc.ObjectValue) -> Type:
+    """Return the type that an object value needs at its place in provided data; UNKNOWN in any other expression."""
+    around = value.eContainer()
+    while isinstance(around, ex.Conditional):
+        around = around.eContainer()
+    if isinstance(around, rsc.ProvideStatement):
+        reference = around.communicationType
+        return provided_data_type(reference.communicationType if reference else None)
+    is_property = isinstance(around, rsc.ObjectPropertyValue) and around.property
+    return declared_type(around.property.type) if is_property else UNKNOWN
+
+
 def value_type(element: ex.Located) -> Type | None:
     """Return the type of `value` at a place in the model. None if there is no `value`.
 

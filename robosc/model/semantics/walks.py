@@ -77,6 +77,23 @@ def with_operands(original: ex.Expression, new_operands: Sequence[ex.Expression]
     return copy
 
 
+def branches(
+    value: ex.Expression,
+) -> Iterator[tuple[Sequence[tuple[ex.Expression, bool]], ex.Expression]]:
+    """Yield the values that conditionals choose from, in the order of the text.
+
+    Each comes with the conditions on the way to it, and whether they hold.
+    """
+    pending: list[tuple[tuple[tuple[ex.Expression, bool], ...], ex.Expression]] = [((), value)]
+    while pending:
+        conditions, branch = pending.pop()
+        if isinstance(branch, ex.Conditional):
+            pending.append(((*conditions, (branch.condition, False)), branch.otherwise))
+            pending.append(((*conditions, (branch.condition, True)), branch.then))
+        else:
+            yield conditions, branch
+
+
 def parts(expression: ex.Expression | None) -> Iterator[ex.Expression]:
     """Iterate over the expression and all its parts, each before its operands, from left to right."""
     pending = [expression]

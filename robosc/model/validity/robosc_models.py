@@ -9,8 +9,7 @@ from robosc.model.semantics.typing import (
     UNKNOWN,
     ObjectType,
     access_types,
-    declared_type,
-    provided_data_type,
+    object_value_type,
     value_type,
 )
 from robosc.model.validity.model_checks import around, demand
@@ -97,11 +96,7 @@ def _access(access: robosc.Access, _model: Model) -> Iterator[Fault]:
 
 def _property(element: robosc.ObjectPropertyValue, _model: Model) -> Iterator[Fault]:
     owner: Any = element.eContainer()
-    owner = owner.eContainer()
-    if isinstance(owner, robosc.ProvideStatement):
-        yield from _member(element, provided_data_type(owner.communicationType.communicationType))
-    elif isinstance(owner, robosc.ObjectPropertyValue):
-        yield from _member(element, declared_type(owner.property.type))
+    yield from _member(element, object_value_type(owner))
 
 
 def _member(element: Any, of: Any) -> Iterator[Fault]:

@@ -160,7 +160,8 @@ _ONE_PLANT = demand(
 _WHOLE = demand(
     lambda access: (
         access.type is not None
-        or isinstance(access.eContainer(), rosgraph.ConversionCall | rosgraph.NodeAssignment | rosgraph.FieldAssignment)
+        or isinstance(access.eContainer(), rosgraph.ConversionCall | rosgraph.NodeAssignment)
+        or (isinstance(access.eContainer(), rosgraph.FieldAssignment) and access.eContainer().value is access)
     ),
     "only inputs of conversions and data stored or sent as a whole may have no type",
 )
@@ -179,7 +180,11 @@ CHECKS: Checks = {
     object: [_own_event],
     rosgraph.RosGraph: [_received_shapes],
     rosgraph.NodeVariable: [check_type("initial", lambda variable: declared_type(variable.type))],
-    rosgraph.FieldAssignment: [check_type("value", lambda field: declared_type(field.type)), _FIELD],
+    rosgraph.FieldAssignment: [
+        check_type("value", lambda field: declared_type(field.type)),
+        check_type("condition"),
+        _FIELD,
+    ],
     rosgraph.InputAssignment: [check_type("value", lambda assignment: declared_type(assignment.input.type))],
     rosgraph.NodeAssignment: [check_type("value", lambda assignment: declared_type(assignment.variable.type))],
     rosgraph.ConversionRule: [check_type("condition")],

@@ -255,6 +255,7 @@ CHECKS: Checks = {
     sct.Update: [_OWN_VARIABLE, check_type("value", lambda update: declared_type(update.variable.type))],
     sct.Requirement: [_RESTRICTABLE, check_type("condition")],
     sct.StateInvariant: [check_type("condition")],
+    sct.ReachabilityRequirement: [check_type("condition"), check_type("premise")],
     sct.Property: [check_type("condition")],
     sct.ReachabilityProperty: [check_type("premise")],
     sct.EventGuard: [_CONTROLLABLE, check_type("requirement"), check_type("synthesis")],

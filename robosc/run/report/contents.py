@@ -58,7 +58,7 @@ def report(  # noqa: PLR0913 - the inputs of a report
     different = {text: path for path, text in reversed(traces.items())}
     shown = play(models, {path: text for path, text in traces.items() if different[text] == path})
     model = models.sct
-    statements = [*model.requirements, *model.invariants, *model.properties]
+    statements = [*model.requirements, *model.invariants, *model.reachabilityRequirements, *model.properties]
     return {
         "notice": NOTICE,
         "robot": model.name,
@@ -158,7 +158,7 @@ def _kind(statement: sct.StatedRequirement) -> str:
     match statement:
         case sct.Requirement():
             return "requirement"
-        case sct.StateInvariant():
+        case sct.StateInvariant() | sct.ReachabilityRequirement():
             return "state requirement"
     return "property"
 

@@ -285,6 +285,6 @@ def _show(model: sct.SupervisoryControlModel, synthesis: Diagnosis, times: int) 
     for weight in synthesis.weights:
         say(f"\n{quote_requirements(weight.requirements)}")
         count = format_count(weight.states, "state")
-        invariant = isinstance(weight.requirements[0], sct.StateInvariant)
+        invariant = isinstance(weight.requirements[0], sct.StateInvariant | sct.ReachabilityRequirement)
         matters = f"forbids {count}" if invariant else f"restricts the robot in {count}"
         say(f"    {matters if weight.states else 'matters in no state'}")

@@ -115,7 +115,7 @@ def command(
                 nodes = [node] if node else _nodes(robot.rosgraph, settings)
                 record = view.Live(simulation, robot.rosgraph, " or ".join(nodes))
                 heard.append((nodes, record))
-        shown.append((view.describe(robot, report.texts), record))
+        shown.append((view.describe(robot, report.texts, report.findings), record))
     try:
         if folder is not None:
             ((description, record),) = shown

@@ -102,6 +102,7 @@ component ${1:Door} {
         Snippet("requirement … needs", "requirement ${1:communication} needs ${2:condition}$0", "needs"),
         Snippet("requirement … disables", "requirement ${1:condition} disables ${2:communication}$0"),
         Snippet("requirement never", "requirement never ${1:condition}$0", "never"),
+        Snippet("requirement reachable", "requirement reachable ${1:condition}$0", "reachable"),
         Snippet(
             "requirement: automaton",
             """\

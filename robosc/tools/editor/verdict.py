@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import robosc
 from robosc.analysis.supervise import supervise
-from robosc.analysis.system import format_count
+from robosc.analysis.system import format_count, format_number
 from robosc.base.diagnostics import ModelError, has_errors
 from robosc.model import sct
 from robosc.model.places import place
@@ -26,7 +26,10 @@ from robosc.model.semantics.walks import copy_tree
 from robosc.tools.editor.answers import Request, Verdict
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
     from robosc.analysis.supervise import Supervision
+    from robosc.base.diagnostics import Diagnostic
 
 #: Memory limit of decision diagrams in bytes, for use beside an editor.
 _MEMORY = 1 << 30
@@ -49,13 +52,17 @@ def _verdict(path: str, model: sct.SupervisoryControlModel, supervision: Supervi
     synthesis = supervision.synthesis
     states = f"{format_count(synthesis.controlled_states, 'state')} under its supervisor"
     without = synthesis.uncontrolled_states
-    size = states + (f", {without} without requirements" if without is not None else "")
+    size = states + (f", {format_number(without)} without requirements" if without is not None else "")
     faults = [finding.message for finding in supervision.findings if has_errors([finding])]
     requirements = {}
     for weight in synthesis.weights:
         file, span = place(weight.requirements[0])
         if file == path:
-            forbids = "forbids" if isinstance(weight.requirements[0], sct.StateInvariant) else "restricts the robot in"
+            forbids = (
+                "forbids"
+                if isinstance(weight.requirements[0], sct.StateInvariant | sct.ReachabilityRequirement)
+                else "restricts the robot in"
+            )
             effect = f"{forbids} {format_count(weight.states, 'state')}" if weight.states else "matters in no state"
             requirements[str(span.line)] = effect
     guards: dict[str, list[str]] = {}
@@ -66,7 +73,26 @@ def _verdict(path: str, model: sct.SupervisoryControlModel, supervision: Supervi
         if whole is not None and origin and guard.event.kind in (sct.EventKind.trigger, sct.EventKind.cancel):
             name = "request" if guard.event.kind == sct.EventKind.trigger else "cancel"
             guards.setdefault(origin, []).append(f"{name}: {printed(whole)}")
+    for finding, title in _absent(supervision.findings):
+        line = str(finding.span.line)
+        if finding.file == path and line in requirements:
+            requirements[line] += f"; {title}"
+        else:
+            faults.append(title)
     return Verdict("; ".join([size, *faults]), requirements, guards)
+
+
+def _absent(findings: Sequence[Diagnostic]) -> Iterator[tuple[Diagnostic, str]]:
+    """Yield the original finding about each event or state that never occurs, with its consequences as one text."""
+    for finding in findings:
+        if finding.rule not in ("never-enabled", "unreachable-state") or finding.follows:
+            continue
+        original = finding.file, finding.span
+        following = sum(
+            (other.related[0].file, other.related[0].span) == original for other in findings if other.follows
+        )
+        title = finding.message.partition(": ")[0]
+        yield finding, f"{title}; therefore, {format_count(following, 'more finding')}" if following else title
 
 
 def main() -> None:

@@ -7,6 +7,7 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
 from robosc.analysis.wording import name, words
+from robosc.base.diagnostics import in_order
 from robosc.language.highlighting.lines import color_lines
 from robosc.language.text import Text
 from robosc.model import expression as ex
@@ -20,8 +21,9 @@ from robosc.run.simulation.data import data_beside
 from robosc.tools.diagrams import connections
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
+    from robosc.base.diagnostics import Diagnostic, Span
     from robosc.language.tokens import Token
     from robosc.m2t.models import Models
 
@@ -35,8 +37,10 @@ _KINDS = {ex.BooleanType: "checkbox", ex.IntegerType: "whole", ex.DoubleType: "n
 _LONGEST = 60
 
 
-def describe(models: Models, texts: Mapping[str, str]) -> dict[str, Any]:
+def describe(models: Models, texts: Mapping[str, str], findings: Iterable[Diagnostic] = ()) -> dict[str, Any]:
     """Return the description as JSON data; `texts` are the texts of the model's files by their paths.
+
+    `findings` are those about the model. The page shows them in order, consequences below their cause.
 
     Automata are numbered in the order of the model, and so are the states and transitions of each. A place is a `file`
     (an index in `files`) with the lines and columns of a span, from 1.
@@ -68,7 +72,7 @@ def describe(models: Models, texts: Mapping[str, str]) -> dict[str, Any]:
     ]
     invariants = [
         {"event": "", "name": invariant.name or "", "text": invariant.text, "place": describer.place(invariant)}
-        for invariant in model.invariants
+        for invariant in [*model.invariants, *model.reachabilityRequirements]
         if invariant.text
     ]
     return {
@@ -77,6 +81,15 @@ def describe(models: Models, texts: Mapping[str, str]) -> dict[str, Any]:
         "events": events,
         "commands": [event_name(event) for event in commands_of(model)],
         "requirements": requirements + invariants + assumptions,
+        "findings": [
+            {
+                "message": finding.message,
+                "hint": finding.hint or "",
+                "follows": finding.follows > 0,
+                "place": describer.span(finding.file, finding.span),
+            }
+            for finding in in_order(findings)
+        ],
         "communication": [] if models.rosgraph is None else _communication(models),
         "files": [{"name": PurePath(path).name, "lines": color_lines(path, text)} for path, text in texts.items()],
     }
@@ -124,7 +137,10 @@ class _Describer:
         """Return the place of an element, or None if its text is not available."""
         if element.source is None:
             return None
-        file, span = place(element)
+        return self.span(*place(element))
+
+    def span(self, file: str, span: Span) -> dict[str, int] | None:
+        """Return the place of a span, or None if the text of its file is not available."""
         if file not in self.files:
             return None
         return {

@@ -6,10 +6,13 @@ from pathlib import Path
 
 import pytest
 
+from robosc.base.files.resources import locate
 from robosc.base.ros_types import DefinitionError, RosTypes, Section, folders
+from robosc.base.ros_types.wire import NestedType, Sequence
 
 HERE = Path(__file__).parent
 MINIMAL = HERE.parents[1] / "ros" / "interfaces"
+SHIPPED = locate("base/ros_types/definitions")
 
 
 @pytest.fixture(autouse=True)
@@ -69,6 +72,79 @@ def test_standard_services(name: str, request_fields: dict[str, str], response_f
     assert shown(RosTypes(), "std_srvs", name, Section.REQUEST) == [request_fields] * 2
     assert shown(RosTypes(), "std_srvs", name, Section.RESPONSE) == [response_fields] * 2
     assert shown(RosTypes(), "std_srvs", name) == [None, None]
+
+
+@pytest.mark.parametrize(
+    ("package", "name", "section", "expected"),
+    [
+        ("nav2_msgs", "Wait", Section.GOAL, [{"time": "builtin_interfaces/Duration"}, None]),
+        ("nav2_msgs", "GetCosts", Section.RESPONSE, [{"costs": "float32[]", "success": "bool"}, None]),
+        ("example_interfaces", "Fibonacci", Section.FEEDBACK, [{"sequence": "int32[]"}, None]),
+        ("example_interfaces", "Empty", Section.MESSAGE, [{}, None]),
+        ("control_msgs", "GripperCommand", Section.GOAL, [{"command": "control_msgs/GripperCommand"}] * 2),
+        ("control_msgs", "GripperCommand", Section.MESSAGE, [{"position": "float64", "max_effort": "float64"}] * 2),
+        ("control_msgs", "PointHead", Section.FEEDBACK, [{"pointing_angle_error": "float64"}] * 2),
+        ("control_msgs", "ParallelGripperCommand", Section.GOAL, [{"command": "sensor_msgs/JointState"}, None]),
+    ],
+)
+def test_shipped_definitions(package: str, name: str, section: Section, expected: list[dict[str, str] | None]) -> None:
+    assert shown(RosTypes(), package, name, section) == expected
+
+
+def test_a_shipped_type_may_have_more_fields_in_ros_2() -> None:
+    ros2, ros1 = shown(RosTypes(), "control_msgs", "FollowJointTrajectory", Section.GOAL)
+    assert ros1 is not None
+    assert ros2 is not None
+    assert ros2.keys() - ros1.keys() == {
+        "multi_dof_trajectory",
+        "component_path_tolerance",
+        "component_goal_tolerance",
+    }
+    assert ros1.keys() < ros2.keys()
+
+
+def test_shipped_definitions_name_known_types() -> None:
+    unknown = set()
+    for distribution in RosTypes().distributions:
+        for package in ("control_msgs", "example_interfaces", "nav2_msgs", "std_srvs"):
+            for section in Section:
+                for name in distribution.names(package, section.kind):
+                    wires = list((distribution.fields(package, name, section) or {}).values())
+                    inner = [wire.element if isinstance(wire, Sequence) else wire for wire in wires]
+                    unknown |= {
+                        str(wire)
+                        for wire in inner
+                        if isinstance(wire, NestedType)
+                        and not distribution.defines(wire.package, wire.name, Section.MESSAGE)
+                    }
+    assert unknown == {"geographic_msgs/GeoPose"}
+
+
+def test_a_shipped_type_is_in_one_place_for_each_ros() -> None:
+    places = {
+        folder: {str(path.relative_to(SHIPPED / folder)) for path in (SHIPPED / folder).rglob("*.*")}
+        for folder in ("both", "ros1", "ros2")
+    }
+    assert not places["both"] & (places["ros1"] | places["ros2"])
+    for path in SHIPPED.rglob("*.*"):
+        assert "#" not in path.read_text()
+
+
+def test_own_packages_come_before_shipped_definitions(tmp_path: Path) -> None:
+    interfaces = RosTypes([write(tmp_path, nav2_msgs__action__Wait__action="int8 own\n---\n---\n")])
+    assert shown(interfaces, "nav2_msgs", "Wait", Section.GOAL) == [{"own": "int8"}] * 2
+    assert shown(interfaces, "nav2_msgs", "Spin", Section.GOAL)[0] is not None
+
+
+def test_an_installed_package_needs_no_shipped_definitions(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    write(tmp_path / "share", nav2_msgs__action__Wait__action="int8 own\n---\n---\n")
+    write(tmp_path / "share", control_msgs__package__xml="")  # without definitions
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path))
+    interfaces = RosTypes()
+    assert shown(interfaces, "nav2_msgs", "Wait", Section.GOAL) == [{"own": "int8"}, None]
+    assert shown(interfaces, "nav2_msgs", "Spin", Section.GOAL) == [None, None]
+    assert interfaces.distribution(2).names("nav2_msgs", "action") == ["Wait"]
+    assert shown(interfaces, "control_msgs", "PointHead", Section.GOAL)[0] is not None
 
 
 def test_definition_of_an_action(tmp_path: Path) -> None:
@@ -223,17 +299,24 @@ def test_loads_definitions_only_where_a_model_links_them(tmp_path: Path, links: 
 @pytest.mark.parametrize(
     ("package", "name", "section", "meant"),
     [
-        ("nav5_msgs", "ManageLifecycleNodes", Section.REQUEST, None),
+        ("nav5_msgs", "ManageLifecycleNodes", Section.REQUEST, ("nav2_msgs", "ManageLifecycleNodes")),
+        ("nav5_msgs", "ManageLifecycleNodes", Section.MESSAGE, None),
         ("nav5_msgs", "Path", Section.MESSAGE, ("nav_msgs", "Path")),
         ("std5_srvs", "SetBool", Section.MESSAGE, None),
         ("std5_srvs", "SetBool", Section.REQUEST, ("std_srvs", "SetBool")),
-        ("nav5_msgs", "NavigateToPose", Section.GOAL, None),
+        ("nav5_msgs", "NavigateToPose", Section.GOAL, ("nav2_msgs", "NavigateToPose")),
+        ("nav5_msgs", "NavigateToPose", Section.MESSAGE, None),
+        ("nav5_msgs", "SpeedLimit", Section.MESSAGE, ("nav2_msgs", "SpeedLimit")),
+        ("nav5_msgs", "SpeedLimit", Section.REQUEST, None),
+        ("control5_msgs", "GripperCommand", Section.GOAL, ("control_msgs", "GripperCommand")),
+        ("control5_msgs", "GripperCommand", Section.MESSAGE, ("control_msgs", "GripperCommand")),
+        ("control5_msgs", "GripperCommand", Section.REQUEST, None),
         ("sensors_msgs", "LaserScan", Section.MESSAGE, ("sensor_msgs", "LaserScan")),
         ("std_srv", "Trigger", Section.REQUEST, ("std_srvs", "Trigger")),
         ("std_srv", "Triger", Section.REQUEST, None),
     ],
 )
-def test_a_package_is_meant_only_if_it_has_the_type(
+def test_a_package_is_suggested_only_if_it_has_that_type_of_that_kind(
     package: str, name: str, section: Section, meant: tuple[str, str] | None
 ) -> None:
     message, hint, found = RosTypes().why_unknown(package, name, section)

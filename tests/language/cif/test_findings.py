@@ -307,12 +307,17 @@ def test_what_is_read_within_itself_or_named_like_something_ends_in_findings(dec
             assert (found.model is None) == any(finding.severity.value == "error" for finding in found.findings)
 
 
-@pytest.mark.parametrize("name", ["@requirement:reachable", "@requirement:of_tomorrow", "@@requirement:reachable"])
-@pytest.mark.parametrize("before", ["plant p", "location a"])
+@pytest.mark.parametrize(
+    ("name", "before"),
+    [
+        ("@requirement:of_tomorrow", "plant p"),
+        ("@requirement:of_tomorrow", "location a"),
+        ("@requirement:reachable", "location a"),
+        ("@requirement:reachable:soon", "plant p"),
+    ],
+)
 def test_a_requirement_in_an_annotation_is_refused(name: str, before: str) -> None:
     text = "controllable c;\n" + _P.replace(before, f"{name}(a)\n{before}")
-    if name.startswith("@@"):
-        text = f"{name}(p.a) {text.replace(name + '(a)', '')}"
     [finding] = reading(main=text).findings
     assert (finding.rule, finding.severity.value) == ("cif-construct", "error")
     assert finding.message == f"synthesis does not take the requirement `{name}`"
@@ -436,3 +441,23 @@ def test_damaged_specifications_end_in_findings(start: int) -> None:
         path = Path("main.cif").resolve()
         found = read(path, Documents({str(path): text}))
         assert (found.model is None) == bool(found.findings)
+
+
+@pytest.mark.parametrize(
+    ("annotation", "message"),
+    [
+        ("@requirement:reachable(a, avoid: a)", "synthesis does not take the argument `avoid`"),
+        ("@requirement:reachable(a, bound: 3)", "synthesis does not take the argument `bound`"),
+        ("@requirement:reachable(a, a)", "has this argument twice"),
+        ("@requirement:reachable(from: a)", "has no condition"),
+        ("@requirement:reachable(1)", "a condition is bool"),
+        ("@requirement:reachable(b)", "there is no `b` here"),
+        ("@@requirement:reachable(a)", "stands in a wrong place"),
+        ("@requirement:reachable", "synthesis does not take the requirement"),
+        ("@requirement:reachable()", "synthesis does not take the requirement"),
+    ],
+)
+def test_a_requirement_about_reachable_states_is_wrong(annotation: str, message: str) -> None:
+    [finding] = reading(main=f"controllable c;\n{annotation}\n{_P}").findings
+    assert (finding.rule in ("cif-construct", "type", "unresolved-reference"), finding.span.line) == (True, 2)
+    assert message in finding.message

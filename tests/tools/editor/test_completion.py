@@ -67,6 +67,10 @@ def behind(marker: str, typed: str = "|", *, nth: int = 0) -> str:
     return TEXT[: offset + len(marker)] + typed + TEXT[offset + len(marker) :]
 
 
+CHOICE = """robot R {
+  datatype object Speed { forward: double turn: double }
+  component C { incoming message move with type: Speed behaviour { initial marked state home { } } }
+  provide move with if C.home """
 CASES = [
     # The text is complete except at the cursor: (text, expected proposals, unexpected proposals).
     ("|", {"robot", "library"}, {"component"}),
@@ -122,6 +126,8 @@ CASES = [
     ),
     (behind("import Motors", ' with { drive: "|" }'), {"/drive", "/speed"}, {"limit"}),
     (behind("provide reach with ", '{ x: "|" } '), set(), {"/drive"}),
+    (CHOICE + "then { |", {"forward", "turn"}, {"home"}),
+    (CHOICE + "then { forward: 1.0 } else { |", {"forward", "turn"}, {"home"}),
     (behind("robot Cart {\n", "  // |\n"), set(), {"component"}),
 ]
 

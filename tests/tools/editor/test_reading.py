@@ -419,7 +419,7 @@ async def test_units_of_what_ros_defines(client: Editor, folder: Path) -> None:
       initial marked state on { on response from range do near := value.range < 0.5 }
     }
   }
-  provide move with { linear: { x: 0.2 }, angular: { z: -0.5 } }
+  provide move with { linear: if Sensors.near then { x: 0.2 } else { x: 0.3 }, angular: { z: -0.5 } }
 }
 """
     uri, _ = await opened(client, folder / "units_of_ros.rscd", text)
@@ -429,6 +429,7 @@ async def test_units_of_what_ros_defines(client: Editor, folder: Path) -> None:
         (" V", position(text, "value.voltage", 13)),
         (" m", position(text, "value.range", 11)),
         (" m/s", position(text, "0.2", 3)),
+        (" m/s", position(text, "0.3", 3)),
         (" rad/s", position(text, "-0.5", 4)),
     ]
     close(client, uri)

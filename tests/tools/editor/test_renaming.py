@@ -88,6 +88,21 @@ def test_a_name_that_another_one_would_take_is_refused(project: Project, tmp_pat
         renamed(project, text, "near", "seen")
 
 
+def test_a_property_is_renamed_in_each_branch(project: Project, tmp_path: Path) -> None:
+    text = """robot R {
+  interface speed use Speed from cart_msgs
+  datatype object Speed { forward: double turn: double }
+  component C {
+    incoming message move with type: Speed links speed
+    behaviour { initial marked state s { transition goto t } state t { transition goto s } }
+  }
+  provide move with if C.s then { forward: 1.0 } else if C.t then { turn: 1.0, forward: 0.5 } else {}
+}
+"""
+    project.put((tmp_path / "speed.rscd").as_uri(), 1, text)
+    assert renamed(project, text, "forward: double", "ahead")["speed"] == text.replace("forward", "ahead")
+
+
 def test_what_can_not_be_read_is_no_basis(project: Project, tmp_path: Path) -> None:
     text = ROBOT.replace("drive with 0.5", "drive wth Door.open")
     project.put((tmp_path / "cart.rscd").as_uri(), 2, text)

@@ -11,6 +11,7 @@ from robosc.tools.editor.answers import Request, Verdict
 from robosc.tools.editor.project import Project
 from robosc.tools.editor.synthesis import RUNNING, Verdicts, lenses, question
 from robosc.tools.editor.verdict import verdict
+from tests.analysis.test_causes import TURNS
 from tests.tools.editor.server import (
     COMMAND,
     LIBRARY,
@@ -42,6 +43,12 @@ def test_no_supervisor() -> None:
     text = ROBOT.replace("provide", "requirement never Door.closed\n  provide")
     said = verdict(Request(ROBOT_PATH, TEXTS | {ROBOT_PATH: text}, (), ()))
     assert said.robot.startswith("no supervisor: the supervisor is empty")
+
+
+def test_a_cause_counts_its_consequences() -> None:
+    path = "/nowhere/drill.rscd"
+    lenses_of = verdict(Request(path, {path: TURNS}, (), ())).requirements
+    assert lenses_of["29"] == "forbids 4 states; `Spindle.lower` can never be sent; therefore, 5 more findings"
 
 
 def asked(text: str) -> object:

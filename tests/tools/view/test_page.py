@@ -22,6 +22,7 @@ from robosc.run.simulation.session import trace_line
 from robosc.run.simulation.simulation import whole_state
 from robosc.tools.view import export
 from robosc.tools.view.description import automata_of, commands_of
+from tests.analysis.test_causes import TURNS
 from tests.chromium import opened, shown
 
 from .robots import EVIL, record
@@ -254,6 +255,17 @@ def test_names_are_text_whatever_they_say(chromium: Any, tmp_path: Path) -> None
         assert page.locator("h1").text_content() == f"Gate{EVIL}"
         assert EVIL in page.locator("#requirements").text_content()
         assert EVIL in page.locator("#happened").text_content()
+
+
+def test_consequences_stand_below_their_cause(chromium: Any, tmp_path: Path) -> None:
+    path = tmp_path / "drill.rscd"
+    path.write_text(TURNS, encoding="utf-8")
+    with served(path) as address, opened(chromium, address) as page:
+        cause, *others = page.locator("#findings li").all()
+        assert cause.text_content().startswith("Spindle.lower can never be sent: ")
+        assert "robosc explain --why-never Spindle.lower" in cause.text_content()
+        assert len(others) == 5
+        assert [item.get_attribute("class") for item in [cause, *others]] == ["", *["follows"] * 5]
 
 
 def test_one_of_several_robots_is_chosen(chromium: Any) -> None:

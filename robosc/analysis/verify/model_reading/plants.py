@@ -167,6 +167,10 @@ class _PlantReading:
         """Read the conditions of invariants and properties."""
         for invariant in self.model.invariants:
             self.claim("the condition of an invariant", invariant.condition, invariant)
+        for required in self.model.reachabilityRequirements:
+            self.claim("the reachable condition of a requirement", required.condition, required)
+            premise = required.premise or ex.BooleanLiteral(value=True)
+            self.claim("the condition after `from` of a requirement", premise, required)
         for claimed in self.model.properties:
             if isinstance(claimed, sct.InvariantProperty):
                 self.claim("the condition of a property", claimed.condition, claimed)

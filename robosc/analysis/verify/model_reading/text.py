@@ -440,7 +440,7 @@ class _TextReading:
 
         An action is canceled if one of its requirements does not hold.
         """
-        known = (robosc.CommunicationRequirement, robosc.StateInvariant, *OBSERVERS)
+        known = (robosc.CommunicationRequirement, robosc.StateInvariant, robosc.ReachabilityRequirement, *OBSERVERS)
         for requirement, _ in self.names.definitions(robosc.Requirement):
             if not isinstance(requirement, known):
                 raise NotReadError(requirement)
@@ -536,10 +536,15 @@ class _TextReading:
             event.restrictions.append(Restriction(Condition(possible, reads), True, requirement))
 
     def claims(self) -> None:
-        """Read the conditions of `never`, `always`, and of properties."""
+        """Read the conditions of `never`, `always`, `reachable`, and of properties."""
         for invariant, within in self.names.definitions(robosc.StateInvariant):
             value = invariant.kind == robosc.InvariantKind.always
             self.claim("the condition of an invariant", invariant.condition, within, value, invariant)
+        for required, within in self.names.definitions(robosc.ReachabilityRequirement):
+            self.claim("the reachable condition of a requirement", required.condition, within, True, required)
+            # Without `from`, a way to the condition exists in every state.
+            where = ex.BooleanLiteral(value=True) if required.premise is None else required.premise
+            self.claim("the condition after `from` of a requirement", where, within, True, required)
         for claimed, within in self.names.definitions(robosc.Property):
             if isinstance(claimed, robosc.InvariantProperty):
                 value = claimed.kind == robosc.InvariantKind.always

@@ -87,6 +87,9 @@ def _requirements(base: rsc.Base) -> Iterator[Finding]:
         yield from _boolean(claimed.condition, "the condition of a property", _REQUIREMENT)
         if isinstance(claimed, rsc.ReachabilityProperty):
             yield from _boolean(claimed.premise, "the condition after `from`", _REQUIREMENT)
+    for required in statements(rsc.ReachabilityRequirement, base):
+        yield from _boolean(required.condition, "the condition after `reachable`", _REQUIREMENT)
+        yield from _boolean(required.premise, "the condition after `from`", _REQUIREMENT)
     for automaton in statements(rsc.AutomatonRequirement, base):
         for transition in (transition for state in automaton.states for transition in state.transitions):
             has_reason = transition.event is not None and is_error(port_event_of(transition.event))

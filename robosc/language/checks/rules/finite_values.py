@@ -38,6 +38,7 @@ from robosc.model.semantics.typing import (
     declared_type,
     infer,
 )
+from robosc.model.semantics.walks import branches
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -344,10 +345,10 @@ def _constants(base: Meaning) -> Iterator[tuple[ex.Expression | None, rsc.DataTy
 def _provided(
     data: ex.Expression | None, declared: rsc.DataType | None, name: str
 ) -> Iterator[tuple[ex.Expression | None, rsc.DataType | None, str]]:
-    if not isinstance(data, rsc.ObjectValue):
+    objects = [branch for _, branch in branches(data) if isinstance(branch, rsc.ObjectValue)] if data else []
+    if not objects:
         yield data, declared, name
-        return
-    for field in data.properties:
+    for field in (field for branch in objects for field in branch.properties):
         if field.property is not None:
             yield from _provided(field.value, field.property.type, field.property.name)
 

@@ -13,6 +13,7 @@ from robosc.language.checks.definitions import behaviours, components, of_kind, 
 from robosc.language.checks.edits import Choice, Removal, Renaming
 from robosc.language.checks.rule import Finding, on_line, rule
 from robosc.model import robosc as rsc
+from robosc.model.reflection import tree
 from robosc.model.semantics.failures import FAILURE, is_failure
 from robosc.model.semantics.typing import EnumType, declared_type
 
@@ -132,12 +133,12 @@ def unique_property(base: rsc.Base) -> Iterator[Finding]:
         for second, first in _repeated(definition.properties):
             yield _declared_again("property", second, first, f"object `{definition.name}`")
     for statement in statements(rsc.ProvideStatement, base):
-        yield from _provided_again(statement.data)
+        for _, value in tree(statement):
+            if isinstance(value, rsc.ObjectValue):
+                yield from _provided_again(value)
 
 
-def _provided_again(value: ex.Expression) -> Iterator[Finding]:
-    if not isinstance(value, rsc.ObjectValue):
-        return
+def _provided_again(value: rsc.ObjectValue) -> Iterator[Finding]:
     named: dict[rsc.ObjectProperty, rsc.ObjectPropertyValue] = {}
     for field in value.properties:
         first = named.setdefault(field.property, field)
@@ -148,7 +149,6 @@ def _provided_again(value: ex.Expression) -> Iterator[Finding]:
                 f"property `{field.property.name}` has a value already, expected one for each property",
                 Choice("leave one of the two out", ways),
             )
-        yield from _provided_again(field.value)
 
 
 @rule("single-behaviour")

@@ -11,6 +11,7 @@ from robosc.model import robosc as rsc
 from robosc.model.semantics.communication import ros_type, sent_type
 from robosc.model.semantics.naming import escape_keyword
 from robosc.model.semantics.printing import RoboscPrinter
+from robosc.model.semantics.walks import branches
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -89,6 +90,11 @@ def _shown(expression: ex.Expression, within: Instance | None, known: Instances)
             if field.value is not None
         )
         return "{" + ", ".join(f"{name}: {value}" for name, value in sorted(fields)) + "}"
+    if any(isinstance(branch, rsc.ObjectValue) for _, branch in branches(expression)):
+        return "; ".join(
+            f"{_shown(branch, within, known)} if {[(_shown(test, within, known), holds) for test, holds in conditions]}"
+            for conditions, branch in branches(expression)
+        )
     return RoboscPrinter()(known.expanded(expression, within))
 
 

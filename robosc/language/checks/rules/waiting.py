@@ -216,6 +216,8 @@ def _states_read(known: Instances) -> set[tuple[Instance | None, rsc.State]]:
     required, invariants = known.statements(rsc.CommunicationRequirement), known.statements(rsc.StateInvariant)
     conditions += ((statement.element.condition, statement.within) for statement in required)
     conditions += ((statement.element.condition, statement.within) for statement in invariants)
+    for goal in known.statements(rsc.ReachabilityRequirement):
+        conditions += ((goal.element.condition, goal.within), (goal.element.premise, goal.within))
     for automaton in known.statements(rsc.AutomatonRequirement):
         for state in automaton.element.states:
             conditions += ((transition.guard, automaton.within) for transition in state.transitions)

@@ -47,7 +47,11 @@ class Composer:
         fields: dict[tuple[str, ...], Json] = {}
         alternatives = sending.alternatives
         chosen = next((data for data in alternatives if self.data.is_in(data.location)), None)
-        assignments = list(chosen.fields) if chosen is not None else []
+        assignments = [
+            field
+            for field in (chosen.fields if chosen is not None else ())
+            if field.condition is None or self.data.value(field.condition)
+        ]
         values = [within_range(self.data.value(field.value), field.type) for field in assignments]
         for field, value in zip(assignments, values, strict=True):
             if isinstance(field.value, rosgraph.WireAccess) and holds_objects(field.type):
