@@ -12,7 +12,7 @@ from robosc.base.diagnostics.visible import visible
 from robosc.model import expression as ex
 from robosc.model import robosc, sct
 from robosc.model.semantics.communication import RUNNING_WORD
-from robosc.model.semantics.naming import escape_keyword
+from robosc.model.semantics.naming import TEXT_FUNCTION, escape_keyword
 from robosc.model.semantics.operators import ATOM, PRECEDENCE, SYMBOLS, Associativity, operator_of
 from robosc.model.semantics.walks import fold, operands
 
@@ -139,6 +139,8 @@ class RoboscPrinter(Printer):
                 return Printed(f"({expression.quantifier} {_name(expression.template)}: {texts[0]})")
             case robosc.ErrorReason():
                 return Printed("error")
+            case robosc.IntegerText():
+                return Printed(f"{TEXT_FUNCTION}({texts[0]})")
             case robosc.Call():
                 return Printed(f"{_name(expression.function)}({', '.join(texts)})")
             case robosc.ArrayLiteral():
