@@ -1026,7 +1026,8 @@ class Linker:
 
 def _instance_text(component: rsc.Component) -> str:
     """Return the text that names a component, or the first instance of a fleet."""
-    return instance_text(component, constant_value(component.first))
+    first = constant_value(component.first)
+    return instance_text(component, max(first, 0) if type(first) is int else None)
 
 
 def _is_bound(element: ex.Located, fleet: rsc.Component) -> bool:

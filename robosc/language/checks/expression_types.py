@@ -12,7 +12,8 @@ from robosc.language.checks.rule import Finding
 from robosc.language.checks.type_repairs import equality_repair, repair
 from robosc.model import expression as ex
 from robosc.model import robosc as rsc
-from robosc.model.semantics.naming import TEXT_FUNCTION, escape_keyword
+from robosc.model.semantics.expansion import constant_value
+from robosc.model.semantics.naming import TEXT_FUNCTION, escape_keyword, instance_text
 from robosc.model.semantics.operators import SYMBOLS, Operator, TypeRule, operator_of
 from robosc.model.semantics.typing import (
     BOOLEAN,
@@ -163,7 +164,8 @@ class ExpressionCheck:
             self._operand(expression.body, types[0], BOOLEAN, f"the condition of `{expression.quantifier}`")
         else:
             self._operand(expression.operand, types[0], INTEGER, f"the argument of `{TEXT_FUNCTION}`")
-            if self.place.restriction is not Restriction.CONSTANT:
+            is_joined = isinstance(expression.eContainer(), ex.Addition)  # `+` is a finding there
+            if self.place.restriction is not Restriction.CONSTANT and not is_joined:
                 message = f"`{TEXT_FUNCTION}` is in an expression that is not constant, expected a constant string"
                 self.report(expression, message, "declare a `constant` for the whole string")
 
@@ -274,7 +276,9 @@ class ExpressionCheck:
                 "store it in a variable by `on response from … do variable := value`, and read the variable",
             )
         if isinstance(item, rsc.Component):
-            members = [f"{escape_keyword(item.name)}.{escape_keyword(member)}" for member in _members(item)]
+            number = constant_value(access.index if access.index is not None else item.first)
+            named = instance_text(item, number)
+            members = [f"{named}.{escape_keyword(member)}" for member in _members(item)]
             message = f"component `{item.name}` has no value of its own, expected one of its states or variables"
             if not members:
                 return message, f"`{item.name}` has neither: leave it out"
@@ -311,7 +315,8 @@ def _describe(access: rsc.Access) -> str:
 
 
 def _members(component: rsc.Component) -> list[str]:
-    instance = instances(component.eContainer()).instance(component, None)
+    known = instances(component.eContainer())
+    instance = known.instance(component, None) or next(iter(known.fleet(component).values()), None)
     automaton = instance.automaton if instance else None
     return [
         definition.name

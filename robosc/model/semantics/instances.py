@@ -16,6 +16,7 @@ from robosc.model import robosc
 from robosc.model.reflection import contents
 from robosc.model.semantics.evaluation import literal
 from robosc.model.semantics.expansion import Expansion, constant, constant_value
+from robosc.model.semantics.naming import instance_text
 from robosc.model.semantics.walks import copy_tree
 
 if TYPE_CHECKING:
@@ -304,6 +305,12 @@ class Instances:
         if instance is None or not isinstance(access.item, robosc.Variable):
             return None
         return InstanceVariable(instance, access.item)
+
+    @property
+    def fleet_texts(self) -> Mapping[str, str]:
+        """Texts that name the instances of fleets in a model, by their names: `Cell[2]` for `Cell2`."""
+        members = ((number, instance) for fleet in self._fleets.values() for number, instance in fleet.items())
+        return {instance.name: instance_text(instance.component, number) for number, instance in members}
 
     @property
     def parameters(self) -> list[InstanceParameter]:

@@ -34,6 +34,8 @@ ROBOSC_QUANTIFIERS = tuple(_words(r"^Quantifier: /\(([a-z|]+)\)"))
 TEXT_FUNCTION = "text"
 #: The number of the instance in the arguments and remappings of a fleet.
 NUMBER = "number"
+#: An instance of a fleet, behind its name.
+_INSTANCE = re.compile(r"(?<=\w)\[([0-9]+)\]")
 _WORD = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 
 
@@ -84,6 +86,11 @@ def instance_text(component: robosc.Component, number: object) -> str:
     if component.first is None:
         return name
     return f"{name}[{number if isinstance(number, int) else '…'}]"
+
+
+def output_name(name: str) -> str:
+    """Return a name as all output has it: `Cell2.enter` for `Cell[2].enter`. Other names stay unchanged."""
+    return _INSTANCE.sub(r"\1", name)
 
 
 def enumeration(parts: Iterable[str]) -> str:

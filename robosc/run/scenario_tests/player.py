@@ -15,6 +15,7 @@ from robosc.model import rosgraph, sct
 from robosc.model.semantics.evaluation import evaluate
 from robosc.model.semantics.failures import brings_data, possible_reasons
 from robosc.model.semantics.messages import holds_objects
+from robosc.model.semantics.naming import output_name
 from robosc.model.semantics.roles import event_name, plant_of
 from robosc.run.node_tests.drive import Drive, DrivenController
 from robosc.run.node_tests.messages import Record, leaf_values
@@ -452,9 +453,9 @@ class Player(Drive):
         if by in (None, Blocked.PLANT):
             why = "it is allowed" if by is None else _WHY[Blocked.PLANT]
             return line.fault(f"the {phrase} is not forbidden: {why}", self._state())
+        named = "" if line.by is None else output_name(line.by)
         if line.by is None or any(
-            line.by in (requirement.name, requirement.text) or line.by in (requirement.text or "")
-            for requirement in failing
+            requirement.name in (named, line.by) or line.by in (requirement.text or "") for requirement in failing
         ):
             return None
         others = quote_requirements(failing) if failing else "synthesis"
