@@ -250,7 +250,7 @@ class Linker:
         if name.text in components and components[name.text].first is not None:
             message = f"`{name.text}` is a fleet: only its template or component can be imported"
             definition = components[name.text].type.definition
-            hint = None if definition is None else f"write a fleet of `{escape_keyword(definition.name)}`"
+            hint = None if definition is None else f"import `{escape_keyword(definition.name)}` as a fleet"
             self._report(name, message, hint, rule="argument")
         elif name.text in components:
             element.definition = components[name.text]
@@ -330,6 +330,9 @@ class Linker:
             user.template = templates[0]
         elif components and not templates:
             hint = f"write the condition with `{escape_keyword(name.text)}` itself"
+            origin = self.scope.origin(components[0]).name
+            if components[0].first is not None:
+                hint = "rename the fleet" if origin == name.text else f"write its template, `{escape_keyword(origin)}`"
             message = f"component `{name.text}` is a component, expected a template or a component of a library"
             self._report(name, message, hint, rule=rule)
         elif not components and not self._file.may_declare(name.text, NameKind.COMPONENT):
@@ -368,7 +371,7 @@ class Linker:
             component = self._component(reference, names["component"])
             if component is not None:
                 reference.component = component
-                self._indexed(component, reference.index, names["component"])
+                self._indexed(component, reference.index, names["component"], name)
                 reference.communicationType = self._communication_of(component, name)
             return
         port = self._bare_communication(reference, name)
@@ -412,8 +415,8 @@ class Linker:
             self._missing(name, "there is no component", components, repair)
         return component
 
-    def _indexed(self, component: rsc.Component, index: ex.Expression | None, name: Name) -> None:
-        """Report a fleet without an index, and an index after the name of another component."""
+    def _indexed(self, component: rsc.Component, index: ex.Expression | None, name: Name, member: Name) -> None:
+        """Report a fleet without an index, and an index between the name of another component and its member."""
         if component.first is not None and index is None:
             choice = _instance_text(component)
             hint = Repair(f"write `{choice}`", choices=(choice,))
@@ -421,7 +424,10 @@ class Linker:
             self._report(name, message, hint, rule="argument")
         elif component.first is None and index is not None:
             message = f"`{name.text}` is a component without numbers, expected a fleet before an index"
-            self._report(name, message, "leave the index out", rule="argument")
+            tokens = self._file.text.tokens
+            first, last = tokens[tokens.index_at(name.start) + 1], tokens[tokens.index_at(member.start) - 2]
+            repair = Repair("leave the index out", elsewhere=((first.start, last.end, ""),))
+            self._report(name, message, repair, rule="argument")
 
     def _member_text(self, name: Name) -> Repair | None:
         """Return the repair that writes `Cell[2]` for `Cell2`, if `Cell` is a fleet."""
@@ -516,7 +522,7 @@ class Linker:
             self._qualified(access, templates[first.text], names["item"])
             return
         elif qualifies and first.text in components and self.around(access, rsc.EnumDataType) is None:
-            self._indexed(components[first.text], access.index, first)
+            self._indexed(components[first.text], access.index, first, names["item"])
             self._qualified(access, components[first.text], names["item"])
             return
         elif qualifies and first.text in (automata := self.automata(access)):

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from robosc.language.checks.definitions import of_kind
-from robosc.language.checks.edits import Replacement
+from robosc.language.checks.edits import Replacement, Together
 from robosc.language.checks.expression_types import CONSTANT, ExpressionCheck
 from robosc.language.checks.rule import Finding, on_line
 from robosc.model import robosc as rsc
@@ -30,7 +30,7 @@ def reference_key(reference: rsc.CommunicationReference) -> tuple[Any, ...]:
     index = reference.index
     number = constant_value(index)
     shown = RoboscPrinter()(index) if index is not None and number is None else number
-    return reference.component, shown, reference.communicationType
+    return (reference.component, shown), reference.communicationType
 
 
 def bounds(base: rsc.Base) -> Iterator[Finding]:
@@ -47,10 +47,17 @@ def bounds(base: rsc.Base) -> Iterator[Finding]:
             )
         elif last < first:
             message = f"the range {first}..{last} of `{fleet.name}` is empty, expected the lower bound first"
-            yield Finding(fleet.last or fleet, message, "swap the two bounds")
+            swapped = (
+                Replacement("", str(last), fleet.first or fleet),
+                Replacement("", str(first), fleet.last or fleet),
+            )
+            hint = Together(f"write `{last}..{first}`", swapped, is_choice=True)
+            yield Finding(fleet.last or fleet, message, hint)
         elif last - first >= LARGEST_FLEET:
             message = f"`{fleet.name}` has {last - first + 1:,} instances, expected at most {LARGEST_FLEET:,}"
-            yield Finding(fleet.last or fleet, message, "write smaller bounds")
+            most = str(first + LARGEST_FLEET - 1)
+            way = Replacement(f"write a smaller one, such as `{most}`", most, fleet.last or fleet, is_choice=True)
+            yield Finding(fleet.last or fleet, message, way)
 
 
 def indices(meaning: Meaning, known: Instances) -> Iterator[Finding]:
@@ -68,7 +75,9 @@ def indices(meaning: Meaning, known: Instances) -> Iterator[Finding]:
             if type(number) is int and numbers and number not in numbers:
                 named = f"`{instance_text(fleet, number)}`"
                 message = f"there is no {named}: `{fleet.name}` has the numbers {min(numbers)} to {max(numbers)}"
-                yield meaning.finding(index, message, "write one of these numbers")
+                nearest = str(min(numbers) if number < min(numbers) else max(numbers))
+                way = Replacement(f"write one of these, such as `{nearest}`", nearest, index, is_choice=True)
+                yield meaning.finding(index, message, way)
 
 
 def member_names(base: rsc.Base) -> Iterator[Finding]:
