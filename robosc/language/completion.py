@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.language.grammar import Failure, parse, pattern
 from robosc.language.interface_types import is_made, ros_properties
-from robosc.language.linking import Linker
+from robosc.language.linking import Linker, first_instance
 from robosc.language.outline import Outline
 from robosc.language.scopes import by_name
 from robosc.language.tokens import Kind, Tokens, too_complex
@@ -21,7 +21,7 @@ from robosc.model import robosc as rsc
 from robosc.model.reflection import literals
 from robosc.model.semantics.communication import RUNNING_WORD, event_names, sent_type
 from robosc.model.semantics.failures import FAILURE, FAILURES, reasons
-from robosc.model.semantics.naming import escape_keyword
+from robosc.model.semantics.naming import TEXT_FUNCTION, escape_keyword
 from robosc.model.semantics.operators import FUNCTIONS
 from robosc.model.semantics.typing import ObjectType, access_types, declared_type, provided_data_type, value_type
 
@@ -147,7 +147,9 @@ def _words(block: Block | None, expected: Iterable[str]) -> Iterator[Proposal]:
         elif word == "Quantifier":
             yield from map(Proposal, literals(rsc.Quantifier))
         elif word == "BuiltIn":
-            yield from map(Proposal, FUNCTIONS)
+            yield from map(Proposal, (*FUNCTIONS, TEXT_FUNCTION))
+        elif word == "Each":
+            yield Proposal("each")
     if "end" in expected and block is not None and block.level is not None:
         yield from (Proposal(word, starts=True) for word in sorted(block.level.starters))
 
@@ -275,7 +277,7 @@ def _definitions(linker: Linker, file: File, element: Any, feature: str) -> Iter
             yield from by_name(_components_of(element.library)).items()
         case rsc.InstantiatedComponent():
             yield from ((name, component) for name, component in components.items() if component.parameters)
-        case rsc.InstanceQuantifier():
+        case rsc.InstanceQuantifier() | rsc.StatedDefinition():
             yield from ((name, component) for name, component in components.items() if component.parameters)
         case rsc.TopicRemapping():
             own = linker.around(element, rsc.Component)
@@ -311,7 +313,8 @@ def _communications(
     for name, ports in known.items():
         for component, other in ports:
             if _fits(reference, other):
-                yield name if len(ports) == 1 else f"{component.name}.{name}", other
+                is_alone = len(ports) == 1 and component.first is None
+                yield name if is_alone else f"{first_instance(component)}.{name}", other
 
 
 def _fits(reference: rsc.CommunicationReference, communication: Any) -> bool:

@@ -399,7 +399,7 @@ class Linker:
         several = len({communication for _, communication in ports}) < len({component.name for component, _ in ports})
         if several or ports[0][0].first is not None:
             candidates, texts = _first_few(
-                f"{_instance_text(component)}.{escape_keyword(name.text)}" for component, _ in ports
+                f"{first_instance(component)}.{escape_keyword(name.text)}" for component, _ in ports
             )
             hint = Repair(f"write {candidates}", choices=texts)
             self._report(name, f"`{name.text}` is ambiguous: it may be {candidates}", hint)
@@ -418,7 +418,7 @@ class Linker:
     def _indexed(self, component: rsc.Component, index: ex.Expression | None, name: Name, member: Name) -> None:
         """Report a fleet without an index, and an index between the name of another component and its member."""
         if component.first is not None and index is None:
-            choice = _instance_text(component)
+            choice = first_instance(component)
             hint = Repair(f"write `{choice}`", choices=(choice,))
             message = f"`{name.text}` is a fleet, expected the number of an instance"
             self._report(name, message, hint, rule="argument")
@@ -614,7 +614,7 @@ class Linker:
 
     def _instances_text(self, template: rsc.Component) -> tuple[str, tuple[str, ...]]:
         """Return the instances of a template, or of a new component, as a phrase and as texts."""
-        texts = [_instance_text(part) for part in self._parts.values() if self.scope.origin(part) is template]
+        texts = [first_instance(part) for part in self._parts.values() if self.scope.origin(part) is template]
         choice, choices = _first_few(texts or [f"component other is {escape_keyword(template.name)}(…)"])
         return choice, choices if texts else ()
 
@@ -874,7 +874,7 @@ class Linker:
         """Return the qualified name for a bare name that other components have as a member, or by `having_it`."""
         members = having_it or self.scope.members
         having = [
-            f"{_instance_text(component)}.{escape_keyword(name.text)}"
+            f"{first_instance(component)}.{escape_keyword(name.text)}"
             for component in (self.scope.components if self._is_library else self._parts).values()
             if name.text in (members(component) or {})
         ]
@@ -1030,7 +1030,7 @@ class Linker:
             self.findings.append(self._file.text.error(rule, name.start, name.end, message, repair))
 
 
-def _instance_text(component: rsc.Component) -> str:
+def first_instance(component: rsc.Component) -> str:
     """Return the text that names a component, or the first instance of a fleet."""
     first = constant_value(component.first)
     return instance_text(component, max(first, 0) if type(first) is int else None)

@@ -165,7 +165,7 @@ def test_text_in_each_constant_string() -> None:
     topics = [plant.topic for plant in supervised(text).plants if plant.topic]
     assert topics[:4] == ["/2d1", "n7d1", "/20", "n70"]
     graph = robosc.to_rosgraph(robosc.load(text=text))
-    assert {variable.initial.value for variable in graph.variables} == {"-1"}  # type: ignore[union-attr, attr-defined]
+    assert {variable.initial.value for variable in graph.variables} == {"-1"}  # type: ignore[union-attr]
 
 
 def test_an_own_function_text_wins() -> None:

@@ -181,7 +181,7 @@ class Instances:
         self.base = base
         self._of: dict[robosc.Component, Instance] = {}
         self._fleets: dict[robosc.Component, dict[int, Instance]] = {}
-        self._written: dict[tuple[robosc.StatedDefinition, Instance], robosc.StatedDefinition] = {}
+        self._copies: dict[tuple[robosc.StatedDefinition, Instance], robosc.StatedDefinition] = {}
         resolved = {} if resolved is None else resolved
         self.expanded = Expansion(self)
         for definition in base.definitions:
@@ -226,7 +226,7 @@ class Instances:
         for definitions, within in texts:
             for definition in definitions:
                 if isinstance(definition, kind):
-                    statements += [Statement(written, within) for written in self._each(definition)]
+                    statements += [Statement(each, within) for each in self._each(definition)]
         return statements
 
     def _each(self, definition: Any) -> Iterable[Any]:
@@ -236,9 +236,9 @@ class Instances:
 
     def _for_instance(self, definition: robosc.StatedDefinition, instance: Instance) -> robosc.StatedDefinition:
         """Return a definition with `each` as written for one instance. Equal arguments give the same object."""
-        if (definition, instance) not in self._written:
-            self._written[definition, instance] = _written(definition, instance)
-        return self._written[definition, instance]
+        if (definition, instance) not in self._copies:
+            self._copies[definition, instance] = _copy_for(definition, instance)
+        return self._copies[definition, instance]
 
     def requirement_state(
         self, access: robosc.Access, within: Instance | None, current: Mapping[robosc.Component, Instance]
@@ -260,9 +260,9 @@ class Instances:
             instance = current.get(index.item) or self.instance(index.item, within, index.index)
         if instance is None or instance.definition is not automaton.template:
             return None
-        written = self._for_instance(automaton, instance)
-        assert isinstance(written, robosc.AutomatonRequirement)
-        return written.states[list(automaton.states).index(state)]
+        copy = self._for_instance(automaton, instance)
+        assert isinstance(copy, robosc.AutomatonRequirement)
+        return copy.states[list(automaton.states).index(state)]
 
     def of(self, component: robosc.Component) -> list[Instance]:
         """Return the instances that a component's text defines."""
@@ -495,7 +495,7 @@ def _identifier(remapping: robosc.TopicRemapping, own: Arguments) -> str:
     return computed.value if isinstance(computed, ex.StringLiteral) else ""
 
 
-def _written(definition: robosc.StatedDefinition, instance: Instance) -> robosc.StatedDefinition:
+def _copy_for(definition: robosc.StatedDefinition, instance: Instance) -> robosc.StatedDefinition:
     """Return a copy of a definition with `each` in which the template is an instance.
 
     A quantifier over the template ranges over all instances anew.

@@ -156,8 +156,8 @@ def _owner(reference: robosc.CommunicationReference | robosc.Access) -> robosc.C
 
 def _stands_for_an_instance(component: robosc.Component, reference: Any) -> bool:
     """Return whether a component stands for its instances: in an `all`, `any` or `count`, or a text with `each`."""
-    stated: Any = around(reference, robosc.StatedDefinition)
-    if stated is not None and stated.template is component:
+    definition: Any = around(reference, robosc.StatedDefinition)
+    if definition is not None and definition.template is component:
         return True
     quantifier: Any = around(reference, robosc.InstanceQuantifier)
     while quantifier is not None and quantifier.template is not component:
