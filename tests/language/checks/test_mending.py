@@ -73,6 +73,11 @@ TEXTS = {
   }
 }
 """,
+    "each": """robot R {
+  component C { incoming message m with type: none }
+  requirement P each C: m needs true
+}
+""",
     "calls": """robot R {
   component C { service s with request: none, response: none }
   component D { incoming message m with type: none }
@@ -109,6 +114,7 @@ TOLD = {
         "write `Side[1]` or `Front` in",
         "write the condition with `Front` itself",
         "write `text(i)` with an integer",
+        "write `requirement each T: …` for each instance",
         "write one instance in the brackets",
         "declare `variable",
         "declare an object",
