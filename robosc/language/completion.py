@@ -21,7 +21,7 @@ from robosc.model import robosc as rsc
 from robosc.model.reflection import literals
 from robosc.model.semantics.communication import RUNNING_WORD, event_names, sent_type
 from robosc.model.semantics.failures import FAILURE, FAILURES, reasons
-from robosc.model.semantics.naming import TEXT_FUNCTION, escape_keyword
+from robosc.model.semantics.naming import ROBOSC_QUANTIFIERS, TEXT_FUNCTION, escape_keyword
 from robosc.model.semantics.operators import FUNCTIONS
 from robosc.model.semantics.typing import ObjectType, access_types, declared_type, provided_data_type, value_type
 
@@ -41,6 +41,8 @@ _WORD = re.compile(r"\w*\^?")
 _STRING_OR_COMMENT = re.compile(rf"{pattern('Comment')}|{pattern('String')}|/\*[\s\S]*|[\"'][^\n]*")
 #: Start of a topic name, in the declaration of a communication or in the `with` clause of an import.
 _TOPIC = re.compile(r"""(?:\bidentifier|\bimport\b.*\bwith\s*\{[^}]*)\s*:\s*(["'])([^"']*)\Z""")
+#: Words that are keywords only before the name of a template.
+_BEFORE_TEMPLATE = re.compile(rf"(?<![\w^])(?:{'|'.join((*ROBOSC_QUANTIFIERS, 'each'))})\s+\Z")
 #: Words that continue an incomplete definition, best first, and the text inserted for each.
 _GOING_ON = {
     **{word: word for word in ("needs", "disables", "with", "from", "import", "use", "to", "then", "else", "in", "->")},
@@ -86,7 +88,7 @@ def proposals(
         return start, end, []
     block, expected = _expected_words(content[:start])
     results = dict.fromkeys(_words(block, expected))
-    if {"Name", "UnreservedName"} & expected:
+    if {"Name", "UnreservedName"} & expected or _BEFORE_TEMPLATE.search(content[:start]):
         for text in dict.fromkeys(_with_name(content, start, end)):
             results |= dict.fromkeys(_named(read_text(text), start, ros_types, libraries))
     results |= dict.fromkeys(_ros_names(content, start, ros_types))

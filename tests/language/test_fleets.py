@@ -12,11 +12,18 @@ from click.testing import CliRunner
 import robosc
 from robosc.analysis.verify import validate_model
 from robosc.analysis.verify.verdict import Outcome
+from robosc.base.ros_types import RosTypes
+from robosc.language.completion import proposals
 from robosc.language.configuration import Configuration
+from robosc.language.hover import describe
+from robosc.language.reading import read
+from robosc.language.semantic_tokens import classify
+from robosc.language.text import Documents
 from robosc.tools.cli import main
 from tests.language.second_edition import errors, requirements, running, supervised
 
 if TYPE_CHECKING:
+    from robosc.language.reading import Reading
     from robosc.model import sct
 
 #: Sentences of section 6, each with the test that holds it, or the folder of models that do.
@@ -312,3 +319,44 @@ def test_cell_with_its_number_is_no_name_in_a_model() -> None:
         robosc.load(text=text)
     (finding,) = raised.value.diagnostics
     assert (finding.rule, finding.hint) == ("unresolved-reference", "write `Cell[1]`")
+
+
+@pytest.mark.parametrize(
+    ("requirement", "proposed"),
+    [
+        ("requirement Cell[2].¦ needs Gate.free", {"enter"}),
+        ("requirement Cell[2].enter needs Cell[1].¦", {"inside", "outside", "used"}),
+        ("requirement Cell[2].enter needs Turns[Cell[1]].¦", {"mine", "yours"}),
+        ("requirement each Station: Station.enter needs Station.¦", {"inside", "outside", "used"}),
+        ("requirement each Station: Station.enter needs ¦", {"Station", "Cell", "Turns"}),
+        ("requirement ¦ needs Gate.free", {"each", "Cell[1].enter"}),
+        ("requirement each ¦: Station.enter needs Gate.free", {"Station"}),
+        ('component More[1..2] is Station("/more" + ¦)', {"number", "text"}),
+    ],
+)
+def test_completion(tmp_path: Path, requirement: str, proposed: set[str]) -> None:
+    content, path = robot(FLEET, AUTOMATON, requirement), tmp_path / "robot.rscd"
+    offset = content.index("¦")
+
+    def read_text(text: str) -> Reading:
+        return read(path, documents=Documents({str(path): text}))
+
+    _, _, candidates = proposals(content.replace("¦", ""), offset, read_text, RosTypes(), list)
+    assert proposed <= {candidate.text for candidate in candidates}
+
+
+def test_an_editor_knows_fleets(tmp_path: Path) -> None:
+    """Every name of an instance refers to the fleet, so that renaming the fleet changes all of them."""
+    text = robot(FLEET, AUTOMATON, "requirement Cell[1].enter needs Cell[2].outside and Turns[Cell[3]].mine")
+    reading = read(tmp_path / "robot.rscd", documents=Documents({str(tmp_path / "robot.rscd"): text}))
+    assert reading.base is not None
+    fleet = next(part for part in reading.base.definitions if getattr(part, "first", None) is not None)
+    assert len(reading.file.occurrences(fleet)) == 4
+    hover = describe(reading, fleet, RosTypes())
+    assert hover is not None
+    assert "Fleet of 3 instances: `Cell[1]` … `Cell[3]`." in hover
+    number = describe(reading, fleet.number, RosTypes())
+    assert number is not None
+    assert "The number of the instance of the fleet." in number
+    words = {text[word.start : word.end]: word.what for word in classify(reading.file)}
+    assert (words["text"], words["number"], words["each"]) == ("function", "parameter", "keyword")
