@@ -13,6 +13,7 @@ from robosc.language.grammar import attribute
 from robosc.model import expression as ex
 from robosc.model import robosc as rsc
 from robosc.model.semantics.failures import FAILURE
+from robosc.model.semantics.naming import NUMBER
 from robosc.model.semantics.operators import BY_CLASS, Associativity
 
 if TYPE_CHECKING:
@@ -87,8 +88,15 @@ class Builder:
                 for value in child:
                     if value.rule_name != "sep":
                         self._set(element, feature, value)
+        self._complete(element, node)
+        return element
+
+    def _complete(self, element: Any, node: Node) -> None:
+        """Set what the words of an element imply."""
         if isinstance(element, rsc.InterfaceTypeReference | rsc.ErrorReason):
             self.references[element] = self._implied(element, node)
+        elif isinstance(element, rsc.Component) and element.first is not None:
+            element.number = rsc.FormalParameter(name=NUMBER, type=rsc.IntegerDataType())
         elif isinstance(element, rsc.IntegerDataType) and element.lower is not None:
             self.bounded.append(element)
         elif isinstance(element, rsc.Parameter):
@@ -97,7 +105,6 @@ class Builder:
             self._unsigned[element] = node
         elif isinstance(element, ex.UnaryMinus):
             self._unsigned.pop(element.operand, None)
-        return element
 
     def _implied(self, element: rsc.InterfaceTypeReference | rsc.ErrorReason, node: Node) -> dict[str, Name]:
         """Return a reference to an element that no text, or only the predefined library, declares."""

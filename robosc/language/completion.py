@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.language.grammar import Failure, parse, pattern
 from robosc.language.interface_types import is_made, ros_properties
-from robosc.language.linking import Linker
+from robosc.language.linking import Linker, first_instance
 from robosc.language.outline import Outline
 from robosc.language.scopes import by_name
 from robosc.language.tokens import Kind, Tokens, too_complex
@@ -21,7 +21,7 @@ from robosc.model import robosc as rsc
 from robosc.model.reflection import literals
 from robosc.model.semantics.communication import RUNNING_WORD, event_names, sent_type
 from robosc.model.semantics.failures import FAILURE, FAILURES, reasons
-from robosc.model.semantics.naming import escape_keyword
+from robosc.model.semantics.naming import ROBOSC_QUANTIFIERS, TEXT_FUNCTION, escape_keyword
 from robosc.model.semantics.operators import FUNCTIONS
 from robosc.model.semantics.typing import ObjectType, access_types, object_value_type, value_type
 
@@ -41,6 +41,8 @@ _WORD = re.compile(r"\w*\^?")
 _STRING_OR_COMMENT = re.compile(rf"{pattern('Comment')}|{pattern('String')}|/\*[\s\S]*|[\"'][^\n]*")
 #: Start of a topic name, in the declaration of a communication or in the `with` clause of an import.
 _TOPIC = re.compile(r"""(?:\bidentifier|\bimport\b.*\bwith\s*\{[^}]*)\s*:\s*(["'])([^"']*)\Z""")
+#: Words that are keywords only before the name of a template.
+_BEFORE_TEMPLATE = re.compile(rf"(?<![\w^])(?:{'|'.join((*ROBOSC_QUANTIFIERS, 'each'))})\s+\Z")
 #: Words that continue an incomplete definition, best first, and the text inserted for each.
 _GOING_ON = {
     **{word: word for word in ("needs", "disables", "with", "from", "import", "use", "to", "then", "else", "in", "->")},
@@ -86,7 +88,7 @@ def proposals(
         return start, end, []
     block, expected = _expected_words(content[:start])
     results = dict.fromkeys(_words(block, expected))
-    if {"Name", "UnreservedName"} & expected:
+    if {"Name", "UnreservedName"} & expected or _BEFORE_TEMPLATE.search(content[:start]):
         for text in dict.fromkeys(_with_name(content, start, end)):
             results |= dict.fromkeys(_named(read_text(text), start, ros_types, libraries))
     results |= dict.fromkeys(_ros_names(content, start, ros_types))
@@ -147,7 +149,9 @@ def _words(block: Block | None, expected: Iterable[str]) -> Iterator[Proposal]:
         elif word == "Quantifier":
             yield from map(Proposal, literals(rsc.Quantifier))
         elif word == "BuiltIn":
-            yield from map(Proposal, FUNCTIONS)
+            yield from map(Proposal, (*FUNCTIONS, TEXT_FUNCTION))
+        elif word == "Each":
+            yield Proposal("each")
     if "end" in expected and block is not None and block.level is not None:
         yield from (Proposal(word, starts=True) for word in sorted(block.level.starters))
 
@@ -275,7 +279,7 @@ def _definitions(linker: Linker, file: File, element: Any, feature: str) -> Iter
             yield from by_name(_components_of(element.library)).items()
         case rsc.InstantiatedComponent():
             yield from ((name, component) for name, component in components.items() if component.parameters)
-        case rsc.InstanceQuantifier():
+        case rsc.InstanceQuantifier() | rsc.StatedDefinition():
             yield from ((name, component) for name, component in components.items() if component.parameters)
         case rsc.TopicRemapping():
             own = linker.around(element, rsc.Component)
@@ -311,7 +315,8 @@ def _communications(
     for name, ports in known.items():
         for component, other in ports:
             if _fits(reference, other):
-                yield name if len(ports) == 1 else f"{component.name}.{name}", other
+                is_alone = len(ports) == 1 and component.first is None
+                yield name if is_alone else f"{first_instance(component)}.{name}", other
 
 
 def _fits(reference: rsc.CommunicationReference, communication: Any) -> bool:

@@ -13,7 +13,8 @@ from robosc.model import expression as ex
 from robosc.model import robosc as rsc
 from robosc.model.semantics.communication import carrying_events, events, section_of
 from robosc.model.semantics.expansion import constant_value
-from robosc.model.semantics.naming import enumeration
+from robosc.model.semantics.instances import fleet_numbers
+from robosc.model.semantics.naming import enumeration, instance_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -33,6 +34,8 @@ def describe(reading: Reading, element: Any, ros_types: RosTypes) -> str | None:
     if isinstance(element, rsc.ObjectProperty) and is_made(element.eContainer()):
         declared = element.type
         return f"```robosc\n{element.name}: {type_text(declared)}\n```\nA field of the ROS type {_ros_name(element)}."
+    if isinstance(element, rsc.FormalParameter) and element.source is None:
+        return f"```robosc\n{element.name}: {type_text(element.type)}\n```\nThe number of the instance of the fleet."
     file = _file_of(reading, element)
     if file is None:
         return None
@@ -189,10 +192,19 @@ def _meaning(reading: Reading, file: File, element: Any) -> Iterator[str]:  # no
                 f"where `{_source(file, rule.condition)}`" if hasattr(rule, "condition") else "if no other rule holds"
             )
             yield f"Value of enum `{rule.eContainer().name}`: {when}."
-        case rsc.Component() if element.parameters:
-            yield "Template: components use it with `is` or `import`."
+        case rsc.Component():
+            yield from _component(element)
         case rsc.StatedDefinition():
             yield _statements(file, element)
+
+
+def _component(component: rsc.Component) -> Iterator[str]:
+    numbers = fleet_numbers(component)
+    if component.parameters:
+        yield "Template: components use it with `is` or `import`."
+    elif numbers:
+        ends = dict.fromkeys(f"`{instance_text(component, number)}`" for number in (numbers[0], numbers[-1]))
+        yield f"Fleet of {len(numbers):,} instance{'s' * (len(numbers) > 1)}: {' … '.join(ends)}."
 
 
 def _state(reading: Reading, file: File, state: rsc.State) -> Iterator[str]:

@@ -18,10 +18,11 @@ from robosc.language.spellings import NEGATION, folder
 from robosc.language.syntax_messages import BASIC_TYPES, CONSTRUCTS, did_you_mean
 from robosc.model import expression as ex
 from robosc.model import robosc as rsc
+from robosc.model.reflection import tree
 from robosc.model.semantics.communication import RUNNING_WORD, section_of
 from robosc.model.semantics.expansion import constant_value
 from robosc.model.semantics.failures import FAILURE, FAILURES
-from robosc.model.semantics.naming import enumeration, escape_keyword
+from robosc.model.semantics.naming import NUMBER, TEXT_FUNCTION, enumeration, escape_keyword, instance_text
 from robosc.model.semantics.operators import FUNCTIONS
 from robosc.model.semantics.typing import (
     UNKNOWN,
@@ -43,7 +44,6 @@ if TYPE_CHECKING:
     from robosc.language.builder import Name
     from robosc.language.tokens import Token
     from robosc.model.places import Place
-    from robosc.model.semantics.instances import Resolved
 
 _Element = TypeVar("_Element")
 RULE = "unresolved-reference"
@@ -64,13 +64,11 @@ OWN_MEMBERS = "a component of a library reads only its own members"
 _ANY_NUMBER = "a robot may import a component several times or never: write this in the component"
 
 
-def link(
-    file: File, interfaces: RosTypes, resolved: Resolved, importable: Callable[[], Mapping[str, str]]
-) -> list[Diagnostic]:
+def link(file: File, interfaces: RosTypes, importable: Callable[[], Mapping[str, str]]) -> list[Diagnostic]:
     """Link the names of a file whose libraries are linked, and return a finding for each name that has no element.
 
-    `interfaces` has the ROS types that can take the place of objects. `resolved` caches the resolved components of the
-    libraries, and the call extends it. `importable` returns the components that can be imported, with their libraries.
+    `interfaces` has the ROS types that can take the place of objects. `importable` returns the components that can be
+    imported, with their libraries.
 
     The feature of an unlinked name stays unset. There is no finding for a name that depends on another unlinked name,
     or that text with a syntax error may declare.
@@ -79,7 +77,7 @@ def link(
         return []
     linker = Linker(file, interfaces, importable)
     linker.imports()
-    linker.link(Scope(file, file.base, resolved))
+    linker.link(Scope(file, file.base))
     return _by_cause(linker.findings)
 
 
@@ -126,7 +124,11 @@ class Linker:
         self._types: dict[rsc.Access, list[Type]] = {}
         self._properties: dict[rsc.ObjectDataType, Names] = {}
         self._is_library = isinstance(file.base, rsc.Library)
-        self._present = {type(element) for element in (*file.references, *file.declared_names)}
+        self._present: set[type] = {type(element) for element in (*file.references, *file.declared_names)}
+        if any(isinstance(element, rsc.StatedDefinition) for element in file.references):
+            self._present.add(rsc.StatedDefinition)
+        #: Elements in the index of an instance, which is linked before the instance.
+        self._linked: set[ex.Located] = set()
         self._nearests: dict[type, dict[ex.Located, Any]] = {}
         self._quantifiers: dict[ex.Located, rsc.ArrayQuantifier | None] = {}
 
@@ -175,7 +177,7 @@ class Linker:
             checkpoint()
             if isinstance(element, rsc.Access) and self._may_be_reason(element):
                 reasons[element] = names
-            elif element in self._file.references:  # `.running` is not a property
+            elif element in self._file.references and element not in self._linked:  # `.running` is not a property
                 self._use(element, names)
         for access, bare in reasons.items():
             self._reason(access, bare)
@@ -251,8 +253,8 @@ class Linker:
                 self._argument(element, names["parameter"])
             case rsc.Call():
                 self._call(element, names["function"])
-            case rsc.InstanceQuantifier():
-                self._quantified_template(element, names["template"])
+            case rsc.InstanceQuantifier() | rsc.StatedDefinition():
+                self._template(element, names["template"])
             case rsc.PropertySegment():
                 self._segment(element, names["property"])
             case rsc.ObjectPropertyValue():
@@ -266,7 +268,12 @@ class Linker:
             return  # The search for the library has reported it.
         element.library = library.base
         components, name = library.declared[rsc.Component], names["definition"]
-        if name.text in components:
+        if name.text in components and components[name.text].first is not None:
+            message = f"`{name.text}` is a fleet: only its template or component can be imported"
+            definition = components[name.text].type.definition
+            hint = None if definition is None else f"import `{escape_keyword(definition.name)}` as a fleet"
+            self._report(name, message, hint, rule="argument")
+        elif name.text in components:
             element.definition = components[name.text]
         elif not library.may_declare(name.text, NameKind.COMPONENT, imported=False):
             self._missing(name, f"library `{library.base.name}` has no component", components)
@@ -309,38 +316,50 @@ class Linker:
         elif matches:
             call.function = matches[0][1]
         elif name.text == NEGATION and len(call.arguments) == 1:
-            self._negate(call)
+            self._substitute(call, ex.Negation(operand=call.arguments[0], source=call.source))
+        elif name.text == TEXT_FUNCTION and not self._file.may_declare(name.text, NameKind.NAMED):
+            self._text(call, name)
         elif not self._file.may_declare(name.text, NameKind.NAMED):
             known = [*functions, *self.scope.usable(rsc.Function), *FUNCTIONS]
             self._missing(name, "there is no function", known, did_you_mean(name.text, known, cutoff=0.6) or _FUNCTION)
 
-    def _negate(self, call: Any) -> None:
-        """Replace `not (x)` by the negation of `x`: no text declares a function of that name."""
-        self._substitute(call, ex.Negation(operand=call.arguments[0], source=call.source))
-
     def _substitute(self, element: Any, instead: ex.Expression) -> None:
         """Replace an expression of the model by another one."""
-        around, feature = element.eContainer(), element.eContainmentFeature()
-        values = getattr(around, feature.name)
+        container, feature = element.eContainer(), element.eContainmentFeature()
         if feature.many:
-            values[values.index(element)] = instead
+            siblings = getattr(container, feature.name)
+            at = siblings.index(element)
+            siblings.remove(element)
+            siblings.insert(at, instead)
         else:
-            setattr(around, feature.name, instead)
-        self._file.references.pop(element)
+            setattr(container, feature.name, instead)
+        del self._file.references[element]
 
-    def _quantified_template(self, quantifier: rsc.InstanceQuantifier, name: Name) -> None:
+    def _text(self, call: rsc.Call, name: Name) -> None:
+        """Replace a call of `text` by the digits of its argument."""
+        if len(call.arguments) == 1:
+            self._substitute(call, rsc.IntegerText(operand=call.arguments[0], source=call.source))
+            return
+        message = f"`{TEXT_FUNCTION}` has 1 argument, found {len(call.arguments)}"
+        self._report(name, message, f"write `{TEXT_FUNCTION}(i)` with an integer `i`", rule="argument")
+
+    def _template(self, user: rsc.InstanceQuantifier | rsc.StatedDefinition, name: Name) -> None:
+        """Link the template, or the component of a library, in whose instances a text holds."""
+        rule = "argument" if isinstance(user, rsc.StatedDefinition) else RULE
         own = self._file.declared[rsc.Component]
         components = (
             [own[name.text]] if name.text in own else [other for _, other in self.scope.find(rsc.Component, name.text)]
         )
         templates = [component for component in components if component.parameters or name.text not in own]
         if len(templates) == 1:
-            quantifier.template = templates[0]
+            user.template = templates[0]
         elif components and not templates:
             hint = f"write the condition with `{escape_keyword(name.text)}` itself"
-            self._report(
-                name, f"component `{name.text}` is a component, expected a template or a component of a library", hint
-            )
+            origin = self.scope.origin(components[0]).name
+            if components[0].first is not None:
+                hint = "rename the fleet" if origin == name.text else f"write its template, `{escape_keyword(origin)}`"
+            message = f"component `{name.text}` is a component, expected a template or a component of a library"
+            self._report(name, message, hint, rule=rule)
         elif not components and not self._file.may_declare(name.text, NameKind.COMPONENT):
             self._missing(
                 name, "there is no template", [component.name for component in own.values() if component.parameters]
@@ -377,6 +396,7 @@ class Linker:
             component = self._component(reference, names["component"])
             if component is not None:
                 reference.component = component
+                self._indexed(component, reference.index, names["component"], name)
                 reference.communicationType = self._communication_of(component, name)
             return
         port = self._bare_communication(reference, name)
@@ -401,9 +421,10 @@ class Linker:
                 self._missing(name, "there is no communication", self.scope.all_communications())
             return None
         # Duplicate component names are a finding of their own, and a qualified name would stay ambiguous.
-        if len({communication for _, communication in ports}) < len({component.name for component, _ in ports}):
+        several = len({communication for _, communication in ports}) < len({component.name for component, _ in ports})
+        if several or ports[0][0].first is not None:
             candidates, texts = _first_few(
-                f"{escape_keyword(component.name)}.{escape_keyword(name.text)}" for component, _ in ports
+                f"{first_instance(component)}.{escape_keyword(name.text)}" for component, _ in ports
             )
             hint = Repair(f"write {candidates}", choices=texts)
             self._report(name, f"`{name.text}` is ambiguous: it may be {candidates}", hint)
@@ -411,13 +432,35 @@ class Linker:
         return ports[0]
 
     def _component(self, reference: rsc.CommunicationReference, name: Name) -> rsc.Component | None:
-        components = self.components(reference)
+        components = ChainMap(dict(self.templates(reference)), dict(self.components(reference)))
         component: rsc.Component | None = components.get(name.text)
         if component is None and not self._file.may_declare(name.text, NameKind.COMPONENT, imported=False):
             hint = OWN_MEMBERS if name.text in self.scope.components else None
-            repair = self._made_of(name) or hint or self._import_of(name, components)
+            repair = self._member_text(name) or self._made_of(name) or hint or self._import_of(name, components)
             self._missing(name, "there is no component", components, repair)
         return component
+
+    def _indexed(self, component: rsc.Component, index: ex.Expression | None, name: Name, member: Name) -> None:
+        """Report a fleet without an index, and an index between the name of another component and its member."""
+        if component.first is not None and index is None:
+            choice = first_instance(component)
+            hint = Repair(f"write `{choice}`", choices=(choice,))
+            message = f"`{name.text}` is a fleet, expected the number of an instance"
+            self._report(name, message, hint, rule="argument")
+        elif component.first is None and index is not None:
+            message = f"`{name.text}` is a component without numbers, expected a fleet before an index"
+            tokens = self._file.text.tokens
+            first, last = tokens[tokens.index_at(name.start) + 1], tokens[tokens.index_at(member.start) - 2]
+            repair = Repair("leave the index out", elsewhere=((first.start, last.end, ""),))
+            self._report(name, message, repair, rule="argument")
+
+    def _member_text(self, name: Name) -> Repair | None:
+        """Return the repair that writes `Cell[2]` for `Cell2`, if `Cell` is a fleet."""
+        fleet = self.scope.components.get(name.text.rstrip("0123456789"))
+        if self._is_library or fleet is None or fleet.first is None or fleet.name == name.text:
+            return None
+        text = instance_text(fleet, int(name.text[len(fleet.name) :]))
+        return Repair(f"write `{text}`", text)
 
     def components(self, element: ex.Located) -> Names:
         """Return the components that an element can mention.
@@ -442,13 +485,8 @@ class Linker:
         template = None if self._is_library else self.scope.components.get(name.text)
         if template is None:
             return None
-        instance_names = [
-            escape_keyword(part.name) for part in self._parts.values() if self.scope.origin(part) is template
-        ]
-        choice, texts = _first_few(instance_names or [f"component other is {escape_keyword(template.name)}(…)"])
-        return Repair(
-            f"`{escape_keyword(template.name)}` is a template: write {choice}", choices=texts if instance_names else ()
-        )
+        choice, texts = self._instances_text(template)
+        return Repair(f"`{escape_keyword(template.name)}` is a template: write {choice}", choices=texts)
 
     def _import_of(self, name: Name, known: Iterable[str]) -> str | None:
         """Return the import that may be missing; None if a known name is close or no library has the component."""
@@ -503,12 +541,16 @@ class Linker:
         templates = self.templates(access)
         components = self.components(access)
         bound = self.elements(access).get(first.text)
+        is_free = bound is None and parameter is None and self.around(access, rsc.EnumDataType) is None
+        if is_free and not qualifies and self._instance_access(access, first):
+            return
         if bound is not None or parameter is not None:
             access.item = bound or parameter
         elif qualifies and first.text in templates:
             self._qualified(access, templates[first.text], names["item"])
             return
         elif qualifies and first.text in components and self.around(access, rsc.EnumDataType) is None:
+            self._indexed(components[first.text], access.index, first, names["item"])
             self._qualified(access, components[first.text], names["item"])
             return
         elif qualifies and first.text in (automata := self.automata(access)):
@@ -527,6 +569,85 @@ class Linker:
         if qualifies:
             self._read_as_property(access, names["item"])
 
+    def _instance_access(self, access: rsc.Access, name: Name) -> bool:
+        """Link a name with an index as an instance, or its member, and return whether it is one.
+
+        `Cell[2].free` reads a member of an instance, `Turns[Cell[2]].mine` the state of a requirement automaton.
+        """
+        index = access.segments[0] if access.segments else None
+        if not isinstance(index, rsc.IndexSegment):
+            return False
+        component = self.components(access).get(name.text)
+        own = self.around(access, rsc.Component)
+        members = (self.scope.members(own) if own is not None else None) or {}
+        automaton = None if component or name.text in members else self.automata(access).get(name.text)
+        if component is not None and component.first is not None:
+            self._fleet_access(access, index, name, component)
+        elif automaton is not None and automaton.template is not None:
+            self._automaton_access(access, index, name, automaton)
+        else:
+            return False
+        return True
+
+    def _fleet_access(self, access: rsc.Access, index: rsc.IndexSegment, name: Name, fleet: rsc.Component) -> None:
+        member = self._move_index(access, index, name)
+        if member is not None:
+            self._qualified(access, fleet, member)
+        else:
+            access.item = fleet
+
+    def _automaton_access(
+        self, access: rsc.Access, index: rsc.IndexSegment, name: Name, automaton: rsc.AutomatonRequirement
+    ) -> None:
+        template = automaton.template
+        state = self._move_index(access, index, name)
+        assert template is not None
+        if not self._is_instance_of(access.index, template, self.templates(access)):
+            choice, _ = self._instances_text(template)
+            message = f"`{name.text}` belongs to each instance of `{template.name}`, expected one of them in brackets"
+            self._report(name, message, Repair(f"write {choice} in the brackets"), rule="argument")
+        elif state is not None:
+            self._requirement_state(access, automaton, state)
+        else:
+            states = enumeration(f"`{state.name}`" for state in automaton.states)
+            message = f"requirement `{name.text}` has no value of its own, expected one of its states"
+            self._report(name, message, f"write {states} behind the brackets")
+
+    def _move_index(self, access: rsc.Access, index: rsc.IndexSegment, name: Name) -> Name | None:
+        """Move the index behind a name from the segments to the access, and return the name behind it, if any."""
+        number = index.first or ex.IntegerLiteral(value=index.index, source=index.source)
+        for _, part in tree(number):
+            names = self._file.references.get(part)
+            if names is not None and part not in self._linked:
+                self._linked.add(part)
+                self._use(part, names)
+        if index.last is not None:
+            message = f"`{name.text}` has a range in brackets, expected one instance"
+            self._report(name, message, "write one instance in the brackets", rule="argument")
+        access.segments.remove(index)
+        access.index = number
+        behind = access.segments[0] if access.segments else None
+        if not isinstance(behind, rsc.PropertySegment):
+            return None
+        access.segments.remove(behind)
+        member = self._file.references.pop(behind)["property"]
+        self._file.references[access] = {"component": name, "item": member}
+        return member
+
+    def _is_instance_of(self, expression: ex.Expression | None, template: rsc.Component, current: Names) -> bool:
+        if not isinstance(expression, rsc.Access) or not isinstance(expression.item, rsc.Component):
+            return False
+        component = expression.item
+        if component.first is not None and expression.index is None:
+            return False
+        return component in current.values() if component is template else self.scope.origin(component) is template
+
+    def _instances_text(self, template: rsc.Component) -> tuple[str, tuple[str, ...]]:
+        """Return the instances of a template, or of a new component, as a phrase and as texts."""
+        texts = [first_instance(part) for part in self._parts.values() if self.scope.origin(part) is template]
+        choice, choices = _first_few(texts or [f"component other is {escape_keyword(template.name)}(…)"])
+        return choice, choices if texts else ()
+
     def automata(self, element: ex.Located) -> Names:
         """Return the requirement automata that an expression can read: of its component, then of the robot."""
         own = self.around(element, rsc.Component)
@@ -538,7 +659,13 @@ class Linker:
 
     def _requirement_state(self, access: rsc.Access, automaton: rsc.AutomatonRequirement, name: Name) -> None:
         states = by_name(automaton.states)
-        if name.text in states:
+        template = automaton.template if access.index is None else None
+        if template is not None and template not in self.templates(access).values():
+            start = self._file.references[access]["component"]
+            choice, _ = self._instances_text(template)
+            message = f"`{start.text}` belongs to each instance of `{template.name}`, expected one of them in brackets"
+            self._report(start, message, f"write {choice} in brackets behind it", rule="argument")
+        elif name.text in states:
             access.item = states[name.text]
         else:
             self._missing(name, f"requirement `{automaton.name}` has no state", states)
@@ -606,6 +733,8 @@ class Linker:
         by_parameter_name: dict[str, Any] = {}
         if isinstance(around, rsc.Component | rsc.EnumDataType):
             by_parameter_name |= by_name(around.parameters)
+        if isinstance(around, rsc.Component) and around.number is not None and not _is_bound(element, around):
+            by_parameter_name[NUMBER] = around.number
         return by_parameter_name | by_name(function.parameters) if function is not None else by_parameter_name
 
     def elements(self, element: ex.Located) -> Names:
@@ -636,13 +765,16 @@ class Linker:
         return quantifier
 
     def templates(self, element: ex.Located) -> Names:
-        """Return the templates whose instances an expression can read: those of the quantifiers around it."""
+        """Return the templates whose instances a name can mean: those of the quantifiers and of `each` around it."""
         by_template_name: dict[str, rsc.Component] = {}
         quantifier = self._nearest(element, rsc.InstanceQuantifier)
         while quantifier is not None:
             if quantifier.template is not None:
                 by_template_name.setdefault(quantifier.template.name, quantifier.template)
             quantifier = self._nearest(quantifier.eContainer(), rsc.InstanceQuantifier)
+        around = self._nearest(element, rsc.StatedDefinition)
+        if around is not None and around.template is not None:
+            by_template_name.setdefault(around.template.name, around.template)
         return by_template_name
 
     def _qualified(self, access: rsc.Access, component: rsc.Component, name: Name) -> None:
@@ -776,7 +908,7 @@ class Linker:
             hint = (_ANY_NUMBER if own is None else OWN_MEMBERS) if name.text in self.scope.components else None
             known = [*components, *members]
             called = self._elsewhere(name, self._calls) if is_call else None
-            repair = self._made_of(name) or hint or called or self._import_of(name, known)
+            repair = self._member_text(name) or self._made_of(name) or hint or called or self._import_of(name, known)
             self._missing(name, "there is no component or variable", known, repair)
         elif not self._file.may_declare(name.text, NameKind.ENUM_VALUE, NameKind.NAMED):
             named = self.scope.usable(rsc.NamedExpression)
@@ -803,7 +935,7 @@ class Linker:
         """Return the qualified name for a bare name that other components have as a member, or by `having_it`."""
         members = having_it or self.scope.members
         having = [
-            f"{escape_keyword(component.name)}.{escape_keyword(name.text)}"
+            f"{first_instance(component)}.{escape_keyword(name.text)}"
             for component in (self.scope.components if self._is_library else self._parts).values()
             if name.text in (members(component) or {})
         ]
@@ -953,6 +1085,20 @@ class Linker:
     def _report(self, name: Name, message: str, repair: Repair | str | None = None, rule: str = RULE) -> None:
         if not self._file.regions.is_uncertain(name.start):
             self.findings.append(self._file.text.error(rule, name.start, name.end, message, repair))
+
+
+def first_instance(component: rsc.Component) -> str:
+    """Return the text that names a component, or the first instance of a fleet."""
+    first = constant_value(component.first)
+    return instance_text(component, max(first, 0) if type(first) is int else None)
+
+
+def _is_bound(element: ex.Located, fleet: rsc.Component) -> bool:
+    """Return whether an element is in the bounds of a fleet."""
+    around = element
+    while around.eContainer() is not None and around.eContainer() is not fleet:
+        around = around.eContainer()
+    return around is fleet.first or around is fleet.last
 
 
 def _first_few(texts: Iterable[str]) -> tuple[str, tuple[str, ...]]:

@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from robosc.base.diagnostics import Diagnostic
     from robosc.language.builder import Name
     from robosc.language.scopes import File
-    from robosc.model.semantics.instances import Resolved
 
 #: Path of the library that every model can use without an import.
 _PREDEFINED = "stdlib/predefined/predefined.rscd"
@@ -93,7 +92,6 @@ class _Reader:
         self._files: dict[Path, File] = {}
         self._paths: dict[Path, Path] = {}
         self._reading: dict[Path, Iterator[Name]] = {}
-        self._resolved: Resolved = {}
 
     def read(self, path: Path, shown: str) -> File:
         """Return the linked file at a path, with all that it imports; findings call it `shown`."""
@@ -110,7 +108,7 @@ class _Reader:
                 continue
             if file.base is not None:
                 importable = partial(self._path.components, self._paths[identity])
-                self.findings += link(file, self._ros_types, self._resolved, importable)
+                self.findings += link(file, self._ros_types, importable)
             del self._reading[identity]
         return first
 

@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from robosc.model import robosc as rsc
-from robosc.model.semantics.instances import Instances, definition_of
+from robosc.model.semantics.instances import definition_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from robosc.base.diagnostics import Diagnostic, Span
     from robosc.language.builder import Name
     from robosc.language.text import Text
-    from robosc.model.semantics.instances import Resolved
 
 #: Elements by name. The first of several equal names counts (the uniqueness rules report the second).
 Names: TypeAlias = "Mapping[str, Any]"
@@ -224,12 +223,17 @@ _NOTHING = _Content({}, {}, {}, {})
 class Scope:
     """Names of one robot or library whose imports are linked."""
 
-    def __init__(self, file: File, base: rsc.Base, resolved: Resolved | None = None) -> None:
+    def __init__(self, file: File, base: rsc.Base) -> None:
         self.components: Names = file.declared[rsc.Component]
         self._file = file
         self._imports = [library for library in file.libraries.values() if library is not None]
         self._predefined = [] if file.predefined is None else [file.predefined]
-        self._instances = Instances(base, resolved)
+        # A component with the name of another one counts, too.
+        self._parts = [
+            definition
+            for definition in base.definitions
+            if isinstance(definition, rsc.Component) and not definition.parameters
+        ]
         self._contents: dict[rsc.Component, _Content | None] = {}
         #: Whether an imported component is unknown.
         self.incomplete = any(self.members(component) is None for component in self.components.values())
@@ -295,14 +299,14 @@ class Scope:
     @cached_property
     def _communicating(self) -> dict[str, list[tuple[rsc.Component, rsc.CommunicationType]]]:
         by_name: dict[str, list[tuple[rsc.Component, rsc.CommunicationType]]] = {}
-        for instance in self._instances:
-            for name, communication in (self.communications(instance.component) or {}).items():
-                by_name.setdefault(name, []).append((instance.component, communication))
+        for component in self._parts:
+            for name, communication in (self.communications(component) or {}).items():
+                by_name.setdefault(name, []).append((component, communication))
         return by_name
 
     def all_communications(self) -> list[str]:
         """Return the names of the communications of all components."""
-        return [name for instance in self._instances for name in self.communications(instance.component) or ()]
+        return [name for component in self._parts for name in self.communications(component) or ()]
 
 
 def _content(local: rsc.LocalComponent) -> _Content:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from robosc.language.grammar import first_words, words_of
 from robosc.language.tokens import Kind
 from robosc.model import robosc as rsc
-from robosc.model.semantics.naming import ROBOSC_QUANTIFIERS
+from robosc.model.semantics.naming import ROBOSC_QUANTIFIERS, TEXT_FUNCTION
 from robosc.model.semantics.operators import FUNCTIONS
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ def classify(file: File) -> list[Word]:
 
 def _words(tokens: Tokens, names: dict[int, Reference]) -> Iterator[Word]:
     end = 0
-    for token in tokens:
+    for index, token in enumerate(tokens):
         if token.start < end:
             continue
         name = names.get(token.start)
@@ -80,6 +80,8 @@ def _words(tokens: Tokens, names: dict[int, Reference]) -> Iterator[Word]:
             yield Word(name.start, name.end, what, name.is_declaration, isinstance(name.target, _READONLY))
         elif not token.is_name and name is None and (what := _own(token.text)) is not None:
             yield Word(token.start, token.end, what)
+        elif token.text == TEXT_FUNCTION and name is None and tokens[index + 1].text == "(":
+            yield Word(token.start, token.end, "function")
 
 
 def _own(word: str) -> str | None:

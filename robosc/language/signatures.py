@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from robosc.language.hover import type_text
 from robosc.language.tokens import Kind, Tokens
 from robosc.model import robosc as rsc
+from robosc.model.semantics.naming import TEXT_FUNCTION
 from robosc.model.semantics.operators import FUNCTIONS
 
 if TYPE_CHECKING:
@@ -35,6 +36,12 @@ def signature(reading: Reading, offset: int) -> Signature | None:
         count = FUNCTIONS[name].parameters
         parameters = ["a", "b"][:count] if count else ["a"]
         return Signature(f"{name}({', '.join(parameters)})", parameters, _active(position, parameters))
+    if name == TEXT_FUNCTION and not any(
+        isinstance(definition, rsc.Function) and definition.name == name
+        for file in reading.files.values()
+        for definition in file.declared_names
+    ):
+        return Signature(f"{name}(i: integer): string", ["i: integer"], _active(position, ["i"]))
     for file in reading.files.values():
         for definition in file.declared_names:
             if isinstance(definition, _CALLED) and definition.name == name and definition.parameters:

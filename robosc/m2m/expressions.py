@@ -65,16 +65,15 @@ class _Expressions:
     def _reference(self, access: robosc.Access, within: Instance | None) -> ex.Expression:
         instances = self._trace.instances
         if isinstance(access.item, robosc.State):
-            instance = instances.instance(access.component, within)
+            instance = instances.instance_of(access, within)
             assert instance is not None
             return sct.LocationReference(location=self._trace.locations[instance, access.item])
         if isinstance(access.item, robosc.RequirementState):
-            inner = isinstance(access.item.eContainer().eContainer(), robosc.LocalComponent)
-            return sct.LocationReference(
-                location=self._trace.requirement_locations[within if inner else None, access.item]
-            )
+            locations = self._trace.requirement_locations
+            own = locations.get((within, access.item))
+            return sct.LocationReference(location=own or locations[None, access.item])
         if isinstance(access.item, robosc.CommunicationType):
-            instance = instances.instance(access.component, within)
+            instance = instances.instance_of(access, within)
             assert instance is not None
             plant = self._trace.plants[PortInstance(instance, access.item)]
             running = (location for location in plant.locations if location.name in RUNNING)

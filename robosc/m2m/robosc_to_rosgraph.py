@@ -319,7 +319,7 @@ class _RoboscToRosgraph:
         if access is None:
             return self.instances.expanded.constant(value, within)
         owned = self.instances.parameter(access, within)
-        return robosc.Access(component=owned.instance.component if owned.instance else None, item=owned.parameter)
+        return robosc.Access(component=owned.instance.referent if owned.instance else None, item=owned.parameter)
 
     def node_type(self, kind: robosc.DataType) -> ex.Type:
         """Return the type of data that the node stores or sends."""

@@ -428,7 +428,7 @@ class _RoboscToSct:
         for number, statement in enumerate(statements, start=1):
             name = _statement_name(statement)
             plant = self.plant(
-                f"requirement_{name.replace('.', '_') if name else number}",
+                f"requirement_{_identifier(name) if name else number}",
                 sct.PlantKind.requirement,
                 name,
                 statement.element.source,
@@ -560,6 +560,11 @@ def _statement_name(statement: Statement[_Definition]) -> str | None:
     """Return the name of a requirement, property or assumption, with its component if it is inside one."""
     name = statement.element.name
     return f"{statement.within.name}.{name}" if name and statement.within else name
+
+
+def _identifier(name: str) -> str:
+    """Return the name of a requirement as an identifier: `Left.R` gives `Left_R`, `R[Cell2]` gives `R_Cell2`."""
+    return name.replace(".", "_").replace("[", "_").replace("]", "")
 
 
 def _location(plant: sct.Plant, name: str, *, initial: bool = False, marked: bool = False) -> sct.Location:

@@ -78,7 +78,10 @@ class Component(Definition, AccessibleItem):
     """A part of the robot (thesis figure 4.4)."""
     parameters: MutableSequence[FormalParameter]
     type: ComponentType
-    def __init__(self, *, parameters: Iterable[FormalParameter] = ..., type: ComponentType | None = ..., source: Place | None = ..., name: str | None = ...) -> None: ...
+    first: expression.Expression | None
+    last: expression.Expression | None
+    number: FormalParameter | None
+    def __init__(self, *, parameters: Iterable[FormalParameter] = ..., type: ComponentType | None = ..., first: expression.Expression | None = ..., last: expression.Expression | None = ..., number: FormalParameter | None = ..., source: Place | None = ..., name: str | None = ...) -> None: ...
 
 class ComponentType(expression.Located):
     """The definition of a component."""
@@ -156,7 +159,8 @@ class CommunicationReference(expression.Located):
     """A name of a communication, with its component if the name alone is ambiguous."""
     component: Component | None
     communicationType: CommunicationType
-    def __init__(self, *, component: Component | None = ..., communicationType: CommunicationType | None = ..., source: Place | None = ...) -> None: ...
+    index: expression.Expression | None
+    def __init__(self, *, component: Component | None = ..., communicationType: CommunicationType | None = ..., index: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
 class CommunicationTypeSet(expression.Located):
     """One communication, or several in braces."""
@@ -333,7 +337,8 @@ class Access(expression.Expression):
     item: AccessibleItem | None
     segments: MutableSequence[AccessSegment]
     enumeration: EnumDataType | None
-    def __init__(self, *, value: bool | None = ..., component: Component | None = ..., item: AccessibleItem | None = ..., segments: Iterable[AccessSegment] = ..., enumeration: EnumDataType | None = ..., source: Place | None = ...) -> None: ...
+    index: expression.Expression | None
+    def __init__(self, *, value: bool | None = ..., component: Component | None = ..., item: AccessibleItem | None = ..., segments: Iterable[AccessSegment] = ..., enumeration: EnumDataType | None = ..., index: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
 class ErrorReason(expression.Expression):
     """The reason for the failure of the service or action in an `error` transition (`error`)."""
@@ -345,6 +350,10 @@ class Call(expression.Expression):
     function: Function
     arguments: MutableSequence[expression.Expression]
     def __init__(self, *, function: Function | None = ..., arguments: Iterable[expression.Expression] = ..., source: Place | None = ...) -> None: ...
+
+class IntegerText(expression.UnaryExpression):
+    """The digits of a constant integer: `text(i)`, unless the model declares a function of this name."""
+    def __init__(self, *, operand: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
 class InstanceQuantifier(expression.Expression):
     """A condition on the instances of a template or of a library's component, or the number of instances that fulfill it."""
@@ -397,23 +406,24 @@ class StatedDefinition(Definition, ComponentDefinition):
     """A requirement, a property or an assumption: enforced, proven, or checked while the robot runs."""
     name: str | None
     text: str | None
-    def __init__(self, *, name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+    template: Component | None
+    def __init__(self, *, name: str | None = ..., text: str | None = ..., template: Component | None = ..., source: Place | None = ...) -> None: ...
 
 class Requirement(StatedDefinition):
     """A requirement that the supervisor enforces (thesis figure 4.13)."""
-    def __init__(self, *, name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+    def __init__(self, *, name: str | None = ..., text: str | None = ..., template: Component | None = ..., source: Place | None = ...) -> None: ...
 
 class CommunicationRequirement(Requirement):
     """A restriction on the start of communication."""
     target: CommunicationTypeSet
     condition: expression.Expression
-    def __init__(self, *, target: CommunicationTypeSet | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+    def __init__(self, *, target: CommunicationTypeSet | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., template: Component | None = ..., source: Place | None = ...) -> None: ...
 
 class StateInvariant(Requirement):
     """A restriction on the reachable states of the supervised robot."""
     kind: InvariantKind
     condition: expression.Expression
-    def __init__(self, *, kind: InvariantKind | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+    def __init__(self, *, kind: InvariantKind | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., template: Component | None = ..., source: Place | None = ...) -> None: ...
 
 class InvariantKind:
     """never: the condition holds in no reachable state; always: the condition holds in every reachable state."""
@@ -425,26 +435,26 @@ class ReachabilityRequirement(Requirement):
     """The supervised robot can always reach a state with the condition."""
     condition: expression.Expression
     premise: expression.Expression | None
-    def __init__(self, *, condition: expression.Expression | None = ..., premise: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+    def __init__(self, *, condition: expression.Expression | None = ..., premise: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., template: Component | None = ..., source: Place | None = ...) -> None: ...
 
 class OrderRequirement(Requirement):
     """A restriction of events to after another event."""
     target: EventSet
     each: bool
     anchor: EventReference
-    def __init__(self, *, target: EventSet | None = ..., each: bool | None = ..., anchor: EventReference | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+    def __init__(self, *, target: EventSet | None = ..., each: bool | None = ..., anchor: EventReference | None = ..., name: str | None = ..., text: str | None = ..., template: Component | None = ..., source: Place | None = ...) -> None: ...
 
 class CountRequirement(Requirement):
     """A bound on the number of events since another event, or since the start."""
     bound: expression.Expression
     target: EventSet
     anchor: EventReference
-    def __init__(self, *, bound: expression.Expression | None = ..., target: EventSet | None = ..., anchor: EventReference | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+    def __init__(self, *, bound: expression.Expression | None = ..., target: EventSet | None = ..., anchor: EventReference | None = ..., name: str | None = ..., text: str | None = ..., template: Component | None = ..., source: Place | None = ...) -> None: ...
 
 class AutomatonRequirement(Requirement):
     """A restriction of events by an automaton. Each event on its transitions happens only if the automaton has a transition for it."""
     states: MutableSequence[RequirementState]
-    def __init__(self, *, states: Iterable[RequirementState] = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+    def __init__(self, *, states: Iterable[RequirementState] = ..., name: str | None = ..., text: str | None = ..., template: Component | None = ..., source: Place | None = ...) -> None: ...
 
 class RequirementState(AccessibleItem):
     """A state of a requirement automaton."""
@@ -482,31 +492,31 @@ class ImpliedEvent(EventReference):
 class Property(StatedDefinition):
     """A claim about the supervised robot that verification proves. The supervisor does not enforce it."""
     condition: expression.Expression
-    def __init__(self, *, condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+    def __init__(self, *, condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., template: Component | None = ..., source: Place | None = ...) -> None: ...
 
 class InvariantProperty(Property):
     """A condition on all reachable states of the supervised robot."""
     kind: InvariantKind
-    def __init__(self, *, kind: InvariantKind | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+    def __init__(self, *, kind: InvariantKind | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., template: Component | None = ..., source: Place | None = ...) -> None: ...
 
 class ReachabilityProperty(Property):
     """A claim that the supervised robot can reach a state with the condition."""
     premise: expression.Expression | None
-    def __init__(self, *, premise: expression.Expression | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+    def __init__(self, *, premise: expression.Expression | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., template: Component | None = ..., source: Place | None = ...) -> None: ...
 
 class NeedsRequirement(CommunicationRequirement):
     """The communication may start only if the condition holds."""
-    def __init__(self, *, target: CommunicationTypeSet | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+    def __init__(self, *, target: CommunicationTypeSet | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., template: Component | None = ..., source: Place | None = ...) -> None: ...
 
 class DisablesRequirement(CommunicationRequirement):
     """The communication may not start if the condition holds."""
-    def __init__(self, *, target: CommunicationTypeSet | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+    def __init__(self, *, target: CommunicationTypeSet | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., template: Component | None = ..., source: Place | None = ...) -> None: ...
 
 class Assumption(StatedDefinition):
     """A condition that the robot keeps by itself: its events come only while the condition holds. The node checks it."""
     target: EventSet
     condition: expression.Expression
-    def __init__(self, *, target: EventSet | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+    def __init__(self, *, target: EventSet | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., template: Component | None = ..., source: Place | None = ...) -> None: ...
 
 class ProvideStatement(Definition, ComponentDefinition):
     """The data of a command (thesis figure 4.12)."""

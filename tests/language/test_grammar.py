@@ -25,7 +25,7 @@ WORDS = {
     "String",
     "LoneString",
 }
-WORDS |= {"Boolean", "Comment"}
+WORDS |= {"Boolean", "Comment", "Each"}
 ENUMERATIONS = ["MessageDirection", "ResultType", "Quantifier", "InvariantKind", "TimeUnit"]
 #: Words that are keywords in one place only, and names elsewhere.
 UNRESERVED = {
@@ -56,17 +56,18 @@ UNRESERVED = {
     "then",
     "without",
 }
-#: Classes without a textual form: only transformations create them.
+#: Classes without a rule: only transformations, or linking, create them.
 MADE_BY_TRANSFORMATIONS = {
     *("Type", "BooleanType", "IntegerType", "DoubleType", "StringType", "EnumerationType", "Enumeration"),
-    *("EnumerationLiteral", "EnumerationLiteralReference", "DoubleConversion"),
+    *("EnumerationLiteral", "EnumerationLiteralReference", "DoubleConversion", "IntegerText"),
 }
 #: Features that no rule sets: reading sets them from the file, and left operands from operator precedence.
 SET_OTHERWISE = {"source", "file", "left"}
 #: Features that linking, or the comment above, sets in elements of one class.
 MADE_BY_LINKING = {
     "InterfaceTypeReference": {"arguments", "definition", "interface", "type"},
-    "Access": {"enumeration"},
+    "Access": {"enumeration", "index"},
+    "Component": {"number"},
     "ErrorReason": {"enumeration"},
     "Parameter": {"description"},
 }

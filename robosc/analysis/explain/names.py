@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from robosc.base.files.json_reading import JsonError, json_value
 from robosc.model import expression as ex
 from robosc.model import sct
+from robosc.model.semantics.naming import output_name
 from robosc.model.semantics.roles import Roles, event_name, plant_of
 from robosc.synthesis.decoding import text, value
 from robosc.synthesis.encoding import domain_size, smallest
@@ -47,6 +48,7 @@ def find_event(model: sct.SupervisoryControlModel, name: str) -> sct.Event:
             meant.setdefault(known_as, []).append(event)
     if words := _IN_WORDS.fullmatch(name.strip()):
         name = f"{words[2]}.{words[1]}"
+    name = output_name(name)
     matches = [event for event in meant.get(name, ()) if event_name(event) == name] or meant.get(name, [])
     if len(matches) == 1:
         return matches[0]
@@ -89,7 +91,7 @@ def parse_state(model: sct.SupervisoryControlModel, text: str) -> dict[Element, 
     elements = _elements(model)
     codes: dict[Element, int] = {}
     for name, chosen in _pairs(model, _echoed(text)):
-        matches = elements.get(name, [])
+        matches = elements.get(output_name(name), [])
         if not matches:
             raise NamingError(f"the state has no `{name}`", _close(name, elements, ""))
         if len(matches) > 1:

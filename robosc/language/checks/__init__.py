@@ -15,12 +15,13 @@ from robosc.base.ros_types import RosTypes
 from robosc.language.checks import rules as _rules  # noqa: F401 - registers them
 from robosc.language.checks.libraries import reachable
 from robosc.language.checks.rule import RULES
+from robosc.model import robosc as rsc
 from robosc.model.places import place
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from robosc.model import robosc as rsc
+    from robosc.model import expression as ex
 
 
 def check(
@@ -47,9 +48,16 @@ def check(
 
 
 def _findings(base: rsc.Base, skipped: Sequence[Diagnostic], interfaces: RosTypes) -> Iterator[Diagnostic]:
+    of_fleets: set[tuple[str, ex.Located, ex.Located | None]] = set()
     for rule in RULES.values():
         checkpoint()
         for finding in rule.check(base, interfaces):
+            if isinstance(finding.element, rsc.Component) and finding.element.first is not None:
+                # The instances of a fleet have one text, so one finding stands for all of them.
+                key = (rule.id, finding.element, finding.related)
+                if key in of_fleets:
+                    continue
+                of_fleets.add(key)
             if not finding.can_be_false(skipped):
                 file, span = place(finding.element)
                 hint, edits, ways = finding.fixes()

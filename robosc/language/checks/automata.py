@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.language.checks.definitions import communication_of, of_kind, statements
 from robosc.language.checks.edits import Choice, Insertion, Removal, part_of
+from robosc.language.checks.fleets import reference_key
 from robosc.language.checks.rule import Finding, on_line
 from robosc.model import robosc as rsc
 from robosc.model.reflection import tree
@@ -92,7 +93,7 @@ def repeated_events(base: rsc.Base) -> Iterator[Finding]:
                 event = port_event_of(transition.event) if reference and reference.communicationType else None
                 if reference is None or event is None:
                     continue
-                key = (reference.component, reference.communicationType, event)
+                key = (*reference_key(reference), event)
                 if key in always:
                     yield Finding(
                         transition,

@@ -12,7 +12,8 @@ from robosc.language.checks.rule import Finding
 from robosc.language.checks.type_repairs import equality_repair, negated_comparison, repair
 from robosc.model import expression as ex
 from robosc.model import robosc as rsc
-from robosc.model.semantics.naming import escape_keyword
+from robosc.model.semantics.expansion import constant_value
+from robosc.model.semantics.naming import TEXT_FUNCTION, escape_keyword, instance_text
 from robosc.model.semantics.operators import SYMBOLS, Operator, TypeRule, operator_of
 from robosc.model.semantics.typing import (
     BOOLEAN,
@@ -145,8 +146,6 @@ class ExpressionCheck:
             case rsc.ErrorReason() if not self.place.has_reason:
                 self.report(expression, "`error` cannot be read here: it exists only at one `error`", _STORE_REASON)
                 return UNKNOWN
-            case rsc.ArrayQuantifier():
-                self._quantifier(expression, types)
             case rsc.ArrayLiteral():
                 self.report(
                     expression,
@@ -164,9 +163,24 @@ class ExpressionCheck:
                 return self._conditional(expression, types)
             case rsc.Call():
                 return declared_type(expression.function.type) if expression.function else UNKNOWN
-            case rsc.InstanceQuantifier():
-                self._operand(expression.body, types[0], BOOLEAN, f"the condition of `{expression.quantifier}`")
+            case rsc.ArrayQuantifier() | rsc.InstanceQuantifier() | rsc.IntegerText():
+                self._own_operands(expression, types)
         return infer(expression) if row is None else self._operator(expression, row, types)
+
+    def _own_operands(
+        self, expression: rsc.ArrayQuantifier | rsc.InstanceQuantifier | rsc.IntegerText, types: list[Type]
+    ) -> None:
+        """Report wrong operands of an expression without a row in the table of operators."""
+        if isinstance(expression, rsc.ArrayQuantifier):
+            self._quantifier(expression, types)
+        elif isinstance(expression, rsc.InstanceQuantifier):
+            self._operand(expression.body, types[0], BOOLEAN, f"the condition of `{expression.quantifier}`")
+        else:
+            self._operand(expression.operand, types[0], INTEGER, f"the argument of `{TEXT_FUNCTION}`")
+            is_joined = isinstance(expression.eContainer(), ex.Addition)  # `+` is a finding there
+            if self.place.restriction is not Restriction.CONSTANT and not is_joined:
+                message = f"`{TEXT_FUNCTION}` is in an expression that is not constant, expected a constant string"
+                self.report(expression, message, "declare a `constant` for the whole string")
 
     def _quantifier(self, quantifier: rsc.ArrayQuantifier, types: list[Type]) -> None:
         if types[0] != UNKNOWN and not isinstance(types[0], ArrayType):
@@ -277,7 +291,9 @@ class ExpressionCheck:
                 "store it in a variable by `on response from … do variable := value`, and read the variable",
             )
         if isinstance(item, rsc.Component):
-            members = [f"{escape_keyword(item.name)}.{escape_keyword(member)}" for member in _members(item)]
+            number = constant_value(access.index if access.index is not None else item.first)
+            named = instance_text(item, number)
+            members = [f"{named}.{escape_keyword(member)}" for member in _members(item)]
             message = f"component `{item.name}` has no value of its own, expected one of its states or variables"
             if not members:
                 return message, f"`{item.name}` has neither: leave it out"
@@ -322,7 +338,8 @@ def _describe(access: rsc.Access) -> str:
 
 
 def _members(component: rsc.Component) -> list[str]:
-    instance = instances(component.eContainer()).instance(component, None)
+    known = instances(component.eContainer())
+    instance = known.instance(component, None) or next(iter(known.fleet(component).values()), None)
     automaton = instance.automaton if instance else None
     return [
         definition.name

@@ -14,7 +14,7 @@ from pydantic.alias_generators import to_camel
 from robosc.base.diagnostics import Diagnostic, ModelError, Severity, Span
 from robosc.base.files import reading as files
 from robosc.base.files.json_reading import JsonError, json_value
-from robosc.model.semantics.naming import controller_name, layer_name, snake_case
+from robosc.model.semantics.naming import controller_name, layer_name, output_name, snake_case
 
 if TYPE_CHECKING:
     from robosc.model.expression import NamedElement
@@ -55,6 +55,8 @@ def _by_topic(values: dict[str, _Value]) -> dict[str, _Value]:
 
 #: One value for each topic, service or action. Keys lose their leading `/`.
 ByTopic = Annotated[dict[str, _Value], AfterValidator(_by_topic)]
+#: Messages of the model. An instance of a fleet has the name as in all output, such as `Cell2`.
+Messages = Annotated[list[str], AfterValidator(lambda names: [output_name(name) for name in names])]
 Milliseconds = Annotated[int, Field(ge=1, le=24 * 3600 * 1000)]
 #: Limited because the C engine counts events of a tick in 16 bits.
 Count = Annotated[int, Field(ge=0, le=0xFFFF)]
@@ -201,17 +203,17 @@ class Configuration(_Settings):
         default=False,
         description="Whether such a silence holds all commands back, cancels actions and sends onShutdown.",
     )
-    on_shutdown: list[str] = Field(
+    on_shutdown: Messages = Field(
         default=[],
         description="Messages of the model to send, in this order, when the node ends or a topic's silence stops it."
         " Without one, the robot continues with its last command.",
     )
-    on_withheld: list[str] = Field(
+    on_withheld: Messages = Field(
         default=[],
         description="Messages of the model to send, in this order, when a command's data cannot be sent."
         " Without one, the robot continues with its last command.",
     )
-    on_blocked: list[str] = Field(
+    on_blocked: Messages = Field(
         default=[],
         description="Messages of the model. A layer that blocks one after it forwarded one sends one itself, once."
         " Without one, the robot continues with its last command.",

@@ -36,12 +36,12 @@ class _Environment(NamedTuple):
 
     `within` is the instance whose text contains the part. `moved`: the part is expanded in another text, so that its
     own names need their component. `templates` maps each template that a quantifier iterates over to the current
-    component. `opened` holds the definitions that are being expanded; it stops circular expansion.
+    instance. `opened` holds the definitions that are being expanded; it stops circular expansion.
     """
 
     within: Instance | None
     arguments: Arguments
-    templates: Mapping[robosc.Component, robosc.Component]
+    templates: Mapping[robosc.Component, Instance]
     opened: frozenset[Any] = frozenset()
     moved: bool = False
 
@@ -188,6 +188,13 @@ class Expansion:
                     return written
             case robosc.InstanceQuantifier(template=robosc.Component()) if self._instances and not self._readable:
                 return (yield from self._quantified(element, environment))
+            case robosc.IntegerText():
+                number = _value((yield (element.operand, environment)))
+                if type(number) is int:
+                    return ex.StringLiteral(value=str(number), source=element.source)
+            case robosc.Access(item=robosc.RequirementState()) if self._instances:
+                state = self._instances.requirement_state(element, environment.within, environment.templates)
+                return robosc.Access(item=state or element.item, source=element.source)
         return (yield from self._copy(element, environment))
 
     def _argument(self, argument: ex.Expression) -> ex.Expression:
@@ -201,7 +208,7 @@ class Expansion:
     ) -> Generator[Any, Any, ex.Expression | None]:
         if self._readable or item in environment.opened or item.value is None:
             return None
-        owner = self._owner(access.component, environment) if _is_member(item) else None
+        owner = self._owner(access, environment) if _is_member(item) else None
         if owner is None and _is_member(item) and isinstance(item, robosc.Condition):
             return None
         if (item, owner) in self._constants:
@@ -244,7 +251,7 @@ class Expansion:
         counts = quantifier.quantifier == robosc.Quantifier.count
         bodies: list[ex.Expression] = []
         for instance in self._instances.of(quantifier.template):
-            templates = {**environment.templates, quantifier.template: instance.component}
+            templates = {**environment.templates, quantifier.template: instance}
             body = yield (quantifier.body, environment._replace(templates=templates))
             if counts:
                 counted, uncounted = ex.IntegerLiteral(value=1), ex.IntegerLiteral(value=0)
@@ -276,22 +283,26 @@ class Expansion:
             else:
                 setattr(copied_element, name, next(inside))
         if isinstance(element, robosc.Access) and element.component is not None:
-            owner = self._owner(element.component, environment)
-            if owner is not None and (environment.moved or element.component in environment.templates):
-                copied_element.component = owner.component
+            owner = self._owner(element, environment)
+            if owner is not None and (environment.moved or element.index or element.component in environment.templates):
+                copied_element.component = owner.referent
+                copied_element.index = None
         return copied_element
 
-    def _owner(self, component: robosc.Component | None, environment: _Environment) -> Instance | None:
+    def _owner(self, access: robosc.Access, environment: _Environment) -> Instance | None:
+        within = environment.within
         if self._instances is None:
-            within = environment.within
-            return within if within is not None and component in {None, within.definition} else None
-        component = environment.templates.get(component, component) if component else None
-        return self._instances.instance(component, environment.within)
+            return within if within is not None and access.component in {None, within.definition} else None
+        current = environment.templates.get(access.component) if access.component else None
+        return current or self._instances.instance_of(access, within)
 
 
-def constant(expression: ex.Expression) -> ex.Expression:
-    """Return a constant expression outside of components as a literal. If it has no value, return it expanded."""
-    return _folded(Expansion(None)(expression, None))
+def constant(expression: ex.Expression, arguments: Arguments | None = None) -> ex.Expression:
+    """Return a constant expression outside of components as a literal. If it has no value, return it expanded.
+
+    `arguments` are the values of parameters that it may read.
+    """
+    return _folded(Expansion(None).expand_with(expression, arguments or {}))
 
 
 def constant_value(expression: ex.Expression | None, within: Instance | None = None) -> Value | None:
@@ -349,9 +360,9 @@ def _enum_value(reference: ex.Expression) -> Value:
 
 
 def _is_affected(part: Any) -> bool:
-    return isinstance(part, robosc.Call | robosc.InstanceQuantifier) or (
-        isinstance(part, robosc.Access) and isinstance(part.item, _NAMED)
-    )
+    if isinstance(part, robosc.Access):
+        return isinstance(part.item, _NAMED) or part.index is not None or isinstance(part.item, robosc.RequirementState)
+    return isinstance(part, robosc.Call | robosc.InstanceQuantifier | robosc.IntegerText)
 
 
 def _is_member(named: robosc.NamedExpression) -> bool:

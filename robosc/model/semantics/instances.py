@@ -1,20 +1,28 @@
-"""Instances of components: one for each component of a robot's text, and one for each import from a library."""
+"""Instances of components: one for each component of a robot's text, and one for each number of a fleet.
+
+A fleet has no meaning beyond its instances: `Instances` creates them, and resolves an index after the name of a fleet.
+It also writes a definition with `each` once for every instance.
+"""
 
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar
 
+from robosc.model import expression as ex
 from robosc.model import robosc
+from robosc.model.reflection import contents
+from robosc.model.semantics.evaluation import literal
 from robosc.model.semantics.expansion import Expansion, constant, constant_value
-from robosc.model.semantics.walks import parts
+from robosc.model.semantics.naming import instance_text
+from robosc.model.semantics.walks import copy_tree, parts
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
-    from robosc.model import expression as ex
+    from robosc.model.semantics.expansion import Arguments
 
 _Element = TypeVar("_Element", bound="ex.Located")
 
@@ -24,7 +32,8 @@ class Instance:
     """A component of a robot, or of a library that is analyzed by itself.
 
     `definition` is the component whose text defines it, in the robot or library `unit`. Names in this text resolve in
-    `unit`. `arguments` are the values of its parameters.
+    `unit`. `arguments` are the values of its parameters. `member` stands for an instance of a fleet in expanded
+    expressions: a component with its name.
     """
 
     component: robosc.Component
@@ -33,12 +42,18 @@ class Instance:
     definition: robosc.Component
     topics: dict[robosc.CommunicationType, str] = field(default_factory=dict)
     arguments: dict[robosc.FormalParameter, ex.Expression] = field(default_factory=dict)
+    member: robosc.Component | None = None
     _types: dict[robosc.DataType, robosc.DataType] = field(default_factory=dict)
 
     @property
     def name(self) -> str:
         """Name of the component in the robot."""
-        return self.component.name
+        return self.referent.name
+
+    @property
+    def referent(self) -> robosc.Component:
+        """Component that refers to the instance in expanded expressions."""
+        return self.member or self.component
 
     @property
     def communications(self) -> list[robosc.CommunicationType]:
@@ -101,6 +116,8 @@ class Instance:
 
 #: Maximum count of an event in a requirement that counts.
 MOST = 1000
+#: Maximum number of instances of a fleet.
+LARGEST_FLEET = 1000
 #: Instance of each component that imports one. None if its import is broken.
 Resolved: TypeAlias = "dict[robosc.Component, Instance | None]"
 
@@ -163,10 +180,15 @@ class Instances:
         """
         self.base = base
         self._of: dict[robosc.Component, Instance] = {}
+        self._fleets: dict[robosc.Component, dict[int, Instance]] = {}
+        self._copies: dict[tuple[robosc.StatedDefinition, Instance], robosc.StatedDefinition] = {}
         resolved = {} if resolved is None else resolved
         self.expanded = Expansion(self)
         for definition in base.definitions:
-            if isinstance(definition, robosc.Component):
+            if isinstance(definition, robosc.Component) and definition.first is not None:
+                fleet = self._fleets[definition] = _fleet(definition, base, resolved)
+                self._of |= {instance.referent: instance for instance in fleet.values()}
+            elif isinstance(definition, robosc.Component):
                 instance = _instantiate(definition, base, resolved)
                 if instance is not None:
                     self._of[definition] = instance
@@ -194,13 +216,18 @@ class Instances:
         return outside or statements
 
     def statements(self, kind: type[_Element]) -> list[Statement[_Element]]:
-        """Return the requirements, or other definitions of a kind: outside of components, then in each instance."""
+        """Return the requirements, or other definitions of a kind: outside of components, then in each instance.
+
+        A definition with `each` is written out once for every instance of its template.
+        """
         statements: list[Statement[_Element]] = []
         texts: list[tuple[Iterable[Any], Instance | None]] = [(self.base.definitions, None)]
         texts += ((instance.local.definitions, instance) for instance in self)
         texts += ((self._library_assumptions(instance), instance) for instance in self)
         for definitions, within in texts:
-            statements += [Statement(definition, within) for definition in definitions if isinstance(definition, kind)]
+            for definition in definitions:
+                if isinstance(definition, kind):
+                    statements += [Statement(each, within) for each in self._each(definition)]
         return statements
 
     def _library_assumptions(self, instance: Instance) -> list[robosc.Assumption]:
@@ -210,32 +237,88 @@ class Instances:
         outside = (definition for definition in instance.unit.definitions if isinstance(definition, robosc.Assumption))
         return [assumption for assumption in outside if instance.definition in assumed_components(assumption, self)]
 
+    def _each(self, definition: Any) -> Iterable[Any]:
+        if not isinstance(definition, robosc.StatedDefinition) or definition.template is None:
+            return [definition]
+        return [self._for_instance(definition, instance) for instance in self.of(definition.template)]
+
+    def _for_instance(self, definition: robosc.StatedDefinition, instance: Instance) -> robosc.StatedDefinition:
+        """Return a definition with `each` as written for one instance. Equal arguments give the same object."""
+        if (definition, instance) not in self._copies:
+            self._copies[definition, instance] = _copy_for(definition, instance)
+        return self._copies[definition, instance]
+
+    def requirement_state(
+        self, access: robosc.Access, within: Instance | None, current: Mapping[robosc.Component, Instance]
+    ) -> robosc.RequirementState | None:
+        """Return the state of a requirement automaton that an access reads. None if its instance is unresolved.
+
+        For an automaton with `each`, this is a state of the automaton as written for the instance of the index, or for
+        the `current` instance of its template.
+        """
+        state = access.item
+        assert isinstance(state, robosc.RequirementState)
+        automaton = state.eContainer()
+        assert isinstance(automaton, robosc.AutomatonRequirement)
+        if automaton.template is None:
+            return state
+        index = access.index
+        instance = current.get(automaton.template)
+        if isinstance(index, robosc.Access) and isinstance(index.item, robosc.Component):
+            instance = current.get(index.item) or self.instance(index.item, within, index.index)
+        if instance is None or instance.definition is not automaton.template:
+            return None
+        copy = self._for_instance(automaton, instance)
+        assert isinstance(copy, robosc.AutomatonRequirement)
+        return copy.states[list(automaton.states).index(state)]
+
     def of(self, component: robosc.Component) -> list[Instance]:
         """Return the instances that a component's text defines."""
         return [instance for instance in self if instance.definition is component]
 
-    def instance(self, component: robosc.Component | None, within: Instance | None) -> Instance | None:
-        """Return the instance that a text refers to by a component.
+    def instance(
+        self, component: robosc.Component | None, within: Instance | None, index: ex.Expression | None = None
+    ) -> Instance | None:
+        """Return the instance that a text refers to by a component, and by the index after the name of a fleet.
 
         `within` is the instance whose behaviour the text is.
         """
         if within is not None and (component is None or component is within.definition):
             return within
-        return None if component is None else self._of.get(component)
+        if component is None or index is None:
+            return None if component is None else self._of.get(component)
+        number = constant_value(index, within)
+        return self._fleets[component].get(number) if component in self._fleets and type(number) is int else None
+
+    def instance_of(
+        self, reference: robosc.CommunicationReference | robosc.Access, within: Instance | None
+    ) -> Instance | None:
+        """Return the instance that an access or a reference names."""
+        return self.instance(reference.component, within, reference.index)
+
+    def fleet(self, component: robosc.Component) -> Mapping[int, Instance]:
+        """Return the instances of a fleet by number."""
+        return self._fleets.get(component, {})
 
     def port(self, reference: robosc.CommunicationReference | None, within: Instance | None) -> PortInstance | None:
         """Return the communication that a reference refers to. None if it is unresolved."""
-        instance = self.instance(reference.component, within) if reference else None
+        instance = self.instance_of(reference, within) if reference else None
         if instance is None or reference is None or reference.communicationType is None:
             return None
         return PortInstance(instance, reference.communicationType)
 
     def variable(self, access: robosc.Access, within: Instance | None) -> InstanceVariable | None:
         """Return the variable that an access reads. None if it reads something else."""
-        instance = self.instance(access.component, within)
+        instance = self.instance_of(access, within)
         if instance is None or not isinstance(access.item, robosc.Variable):
             return None
         return InstanceVariable(instance, access.item)
+
+    @property
+    def fleet_texts(self) -> Mapping[str, str]:
+        """Texts that name the instances of fleets in a model, by their names: `Cell[2]` for `Cell2`."""
+        members = ((number, instance) for fleet in self._fleets.values() for number, instance in fleet.items())
+        return {instance.name: instance_text(instance.component, number) for number, instance in members}
 
     @property
     def parameters(self) -> list[InstanceParameter]:
@@ -256,7 +339,7 @@ class Instances:
         parameter = access.item
         assert isinstance(parameter, robosc.Parameter)
         is_member = isinstance(parameter.eContainer(), robosc.LocalComponent)
-        return InstanceParameter(self.instance(access.component, within) if is_member else None, parameter)
+        return InstanceParameter(self.instance_of(access, within) if is_member else None, parameter)
 
     def assignments(self, transition: robosc.Transition, within: Instance) -> dict[InstanceVariable, robosc.Assignment]:
         """Return the assignments of a transition by variable. The last assignment to a variable counts."""
@@ -345,10 +428,40 @@ def bound_arguments(
     return dict(defaults) | bound
 
 
-def _instantiate(component: robosc.Component, base: robosc.Base, resolved: Resolved) -> Instance | None:
+def fleet_numbers(component: robosc.Component) -> range:
+    """Return the numbers of the instances of a fleet. Empty if its bounds are invalid (rule `integer-range`)."""
+    first, last = constant_value(component.first), constant_value(component.last)
+    if type(first) is not int or type(last) is not int or first < 0 or last - first >= LARGEST_FLEET:
+        return range(0)
+    return range(first, last + 1)
+
+
+def _fleet(component: robosc.Component, base: robosc.Base, resolved: Resolved) -> dict[int, Instance]:
+    """Return the instances of a fleet by number."""
+    kind = component.type
+    if not isinstance(kind, robosc.InstantiatedComponent | robosc.ImportedComponent) or component.number is None:
+        return {}
+    unit = kind.library if isinstance(kind, robosc.ImportedComponent) else base
+    definition = kind.definition
+    is_usable = unit is not None and definition is not None and definition.first is None
+    # An instance of the definition itself, also of a template, which has no arguments yet.
+    made_of = _instantiate(definition, unit, resolved, is_template=True) if is_usable else None
+    if made_of is None:
+        return {}
+    fleet: dict[int, Instance] = {}
+    for number in fleet_numbers(component):
+        member = robosc.Component(name=f"{component.name}{number}", source=component.source)
+        own = {component.number: literal(number)}
+        fleet[number] = replace(_user(made_of, component, kind, own), member=member)
+    return fleet
+
+
+def _instantiate(
+    component: robosc.Component, base: robosc.Base, resolved: Resolved, *, is_template: bool = False
+) -> Instance | None:
     """Follow `is` and imports to the component's definition. Outer remappings win."""
-    if component.parameters:
-        return None  # a template
+    if (component.parameters and not is_template) or component.first is not None:
+        return None
     chain: list[tuple[robosc.Component, robosc.InstantiatedComponent | robosc.ImportedComponent]] = []
     unit, current, seen = base, component, {component}
     instance: Instance | None = None
@@ -361,26 +474,66 @@ def _instantiate(component: robosc.Component, base: robosc.Base, resolved: Resol
             break
         chain.append((current, kind))
         unit, current = kind.library if isinstance(kind, robosc.ImportedComponent) else unit, kind.definition
-        if unit is None or current is None or current in seen:
+        if unit is None or current is None or current in seen or current.first is not None:
             break
         seen.add(current)
     else:
         instance = resolved[current]
     for importing, kind in reversed(chain):
         if instance is not None:
-            topics: dict[robosc.CommunicationType, str] = {}
-            for remapping in kind.remappings if isinstance(kind, robosc.ImportedComponent) else ():
-                topics.setdefault(remapping.communicationType, _identifier(remapping))
-            arguments = instance.arguments
-            if instance.component.parameters:
-                bound = bound_arguments(instance.component.parameters, kind.arguments)
-                arguments = {parameter: constant(value) for parameter, value in bound.items()}
-            topics |= instance.topics | topics
-            instance = Instance(importing, instance.local, instance.unit, instance.definition, topics, arguments)
+            instance = _user(instance, importing, kind, {})
         resolved[importing] = instance
     return instance
 
 
-def _identifier(remapping: robosc.TopicRemapping) -> str:
-    computed = constant_value(remapping.computedIdentifier) if remapping.computedIdentifier else remapping.identifier
-    return computed if isinstance(computed, str) else ""
+def _user(
+    instance: Instance,
+    component: robosc.Component,
+    kind: robosc.InstantiatedComponent | robosc.ImportedComponent,
+    own: Arguments,
+) -> Instance:
+    """Return the instance of a component that uses the component of another one by `is` or an import.
+
+    `own` is the value of `number` in the text of the use.
+    """
+    topics: dict[robosc.CommunicationType, str] = {}
+    for remapping in kind.remappings if isinstance(kind, robosc.ImportedComponent) else ():
+        topics.setdefault(remapping.communicationType, _identifier(remapping, own))
+    arguments = instance.arguments
+    if instance.component.parameters:
+        bound = bound_arguments(instance.component.parameters, kind.arguments)
+        arguments = {parameter: constant(value, own) for parameter, value in bound.items()}
+    topics |= instance.topics | topics
+    return Instance(component, instance.local, instance.unit, instance.definition, topics, arguments)
+
+
+def _identifier(remapping: robosc.TopicRemapping, own: Arguments) -> str:
+    if remapping.computedIdentifier is None:
+        return remapping.identifier or ""
+    computed = constant(remapping.computedIdentifier, own)
+    return computed.value if isinstance(computed, ex.StringLiteral) else ""
+
+
+def _copy_for(definition: robosc.StatedDefinition, instance: Instance) -> robosc.StatedDefinition:
+    """Return a copy of a definition with `each` in which the template is an instance.
+
+    A quantifier over the template ranges over all instances anew.
+    """
+    copy = copy_tree(definition)
+    template, copy.template = copy.template, None
+    copy.name = f"{definition.name}[{instance.name}]" if definition.name else None
+    waiting: list[Any] = [copy]
+    while waiting:
+        part = waiting.pop()
+        if isinstance(part, robosc.InstanceQuantifier) and part.template is template:
+            continue
+        if isinstance(part, robosc.CommunicationReference | robosc.Access) and part.component is template:
+            part.component = instance.referent
+        if isinstance(part, robosc.Access) and part.item is template:
+            part.item = instance.referent
+        elif isinstance(part, robosc.Access) and isinstance(part.item, robosc.RequirementState) and part.index is None:
+            automaton = part.item.eContainer()
+            if isinstance(automaton, robosc.AutomatonRequirement) and automaton.template is template:
+                part.index = robosc.Access(item=instance.referent)
+        waiting += [child for _, child in contents(part)]
+    return copy

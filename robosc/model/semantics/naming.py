@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterable
 
     from robosc.model import expression as ex
+    from robosc.model import robosc
 
 _GRAMMAR = locate("grammar/robosc.tx").read_text(encoding="utf-8")
 
@@ -29,6 +30,12 @@ ROBOSC_KEYWORDS = frozenset(_words(r"^UnreservedName:\s*/\(\?!\(\?:([a-z|]+)\)")
 ROBOSC_FUNCTIONS = tuple(_words(r"^BuiltIn: /\(\?:([a-z0-9|]+)\)"))
 #: Words that begin a condition on the elements of an array, or on the instances of a template.
 ROBOSC_QUANTIFIERS = tuple(_words(r"^Quantifier: /\(([a-z|]+)\)"))
+#: The function that makes a string of a constant integer, where no function of the model has the name.
+TEXT_FUNCTION = "text"
+#: The number of the instance in the arguments and remappings of a fleet.
+NUMBER = "number"
+#: An instance of a fleet, behind its name.
+_INSTANCE = re.compile(r"(?<=\w)\[([0-9]+)\]")
 _WORD = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 
 
@@ -71,6 +78,19 @@ def escape(name: str, keywords: Collection[str]) -> str:
 def escape_keyword(name: str) -> str:
     """Return a name for a RoboSC text at a place where a keyword may stand."""
     return f"^{name}" if name in ROBOSC_KEYWORDS else name
+
+
+def instance_text(component: robosc.Component, number: object) -> str:
+    """Return the text that names an instance: `Base`, or `Cell[2]` in a fleet. `…` stands for an unknown number."""
+    name = escape_keyword(component.name)
+    if component.first is None:
+        return name
+    return f"{name}[{number if isinstance(number, int) else '…'}]"
+
+
+def output_name(name: str) -> str:
+    """Return a name as all output has it: `Cell2.enter` for `Cell[2].enter`. Other names stay unchanged."""
+    return _INSTANCE.sub(r"\1", name)
 
 
 def enumeration(parts: Iterable[str]) -> str:

@@ -12,7 +12,7 @@ from robosc.base.diagnostics.visible import visible
 from robosc.model import expression as ex
 from robosc.model import robosc, sct
 from robosc.model.semantics.communication import RUNNING_WORD
-from robosc.model.semantics.naming import escape_keyword
+from robosc.model.semantics.naming import TEXT_FUNCTION, escape_keyword
 from robosc.model.semantics.operators import ATOM, PRECEDENCE, SYMBOLS, Associativity, operator_of
 from robosc.model.semantics.walks import fold, operands
 
@@ -121,15 +121,7 @@ class RoboscPrinter(Printer):
         texts = [text for text, _ in printed_operands]
         match expression:
             case robosc.Access():
-                name = "value" if expression.item is None else escape_keyword(expression.item.name)
-                component = expression.component
-                if isinstance(expression.item, robosc.RequirementState):
-                    component = expression.item.eContainer()
-                owner = self.owner(component) if component else ""
-                if isinstance(expression.item, robosc.CommunicationType):
-                    name += f".{RUNNING_WORD}"
-                indices = iter(texts)
-                return Printed(owner + name + "".join(_step(segment, indices) for segment in expression.segments))
+                return Printed(self._access(expression, iter(texts)))
             case robosc.ArrayQuantifier():
                 array, body = texts
                 return Printed(
@@ -139,6 +131,8 @@ class RoboscPrinter(Printer):
                 return Printed(f"({expression.quantifier} {_name(expression.template)}: {texts[0]})")
             case robosc.ErrorReason():
                 return Printed("error")
+            case robosc.IntegerText():
+                return Printed(f"{TEXT_FUNCTION}({texts[0]})")
             case robosc.Call():
                 return Printed(f"{_name(expression.function)}({', '.join(texts)})")
             case robosc.ArrayLiteral():
@@ -147,6 +141,16 @@ class RoboscPrinter(Printer):
                 fields = zip((_name(field.property) for field in expression.properties), texts, strict=True)
                 return Printed("{" + ", ".join(f"{name}: {text}" for name, text in fields) + "}")
         return super().write(expression, printed_operands)
+
+    def _access(self, access: robosc.Access, indices: Iterator[str]) -> str:
+        name = "value" if access.item is None else escape_keyword(access.item.name)
+        component = access.component
+        if isinstance(access.item, robosc.RequirementState):
+            component = access.item.eContainer()
+        owner = self.owner(component) if component else ""
+        if isinstance(access.item, robosc.CommunicationType):
+            name += f".{RUNNING_WORD}"
+        return owner + name + "".join(_step(segment, indices) for segment in access.segments)
 
     def owner(self, component: robosc.Component) -> str:
         """Return the prefix for the name of a component's member."""

@@ -7,12 +7,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from robosc.base.files.json_reading import JsonError, json_value
+from robosc.model.semantics.naming import output_name
 
 _KINDS = ("request", "response", "error", "feedback", "canceled", "cancel")
 #: First words of a step that is not a bare name.
 FIRST_WORDS = (*_KINDS, "refuse")
 _KIND = rf"(?P<kind>{'|'.join(_KINDS)})"
-_NAME = r"(?P<name>\^?[A-Za-z_]\w*(?:\.\^?\w+)*)"
+_NAME = r"(?P<name>\^?[A-Za-z_]\w*(?:\[[0-9]+\])?(?:\.\^?\w+)*)"
 #: An event in words, such as `response from scan`. A bare name stands for the usual event of its communication.
 EVENT = rf"(?:{_KIND}\s+(?:to|from)\s+)?{_NAME}"
 #: A time in words, such as `500 ms`, and the seconds of each unit.
@@ -92,4 +93,4 @@ def data_in_words(text: str, position: int) -> Any:
 
 
 def _plain(match: re.Match[str]) -> str:
-    return match["name"].replace("^", "")
+    return output_name(match["name"].replace("^", ""))

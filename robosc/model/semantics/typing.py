@@ -282,6 +282,8 @@ class Types:
                 return access_types(expression, self._value)[-1]
             case rsc.Call():
                 return declared_type(expression.function.type) if expression.function else UNKNOWN
+            case rsc.IntegerText():
+                return STRING
             case rsc.ErrorReason():
                 return EnumType(expression.enumeration) if expression.enumeration else UNKNOWN
             case rosgraph.IfReadable():

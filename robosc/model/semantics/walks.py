@@ -171,6 +171,7 @@ def copy_tree(root: _Element, instead: Mapping[Any, Any] | None = None) -> _Elem
     `instead` maps elements that the original refers to to those that the copy refers to.
     """
     known: dict[Any, Any] = {}
+    references: list[tuple[Any, str, Any]] = []
     others = {} if instead is None else instead
 
     def copy(original: Any, children: list[Any]) -> Any:
@@ -183,8 +184,8 @@ def copy_tree(root: _Element, instead: Mapping[Any, Any] | None = None) -> _Elem
             if is_attribute(feature):
                 setattr(clone, name, value)
             elif not feature.containment:
-                # A reference to an element of an array refers to the copied element, which precedes it.
-                setattr(clone, name, known[value] if value in known else others.get(value, value))
+                setattr(clone, name, others.get(value, value))
+                references.append((clone, name, value))
             elif feature.many:
                 getattr(clone, name).extend(next(inside) for _ in value)
             else:
@@ -192,4 +193,7 @@ def copy_tree(root: _Element, instead: Mapping[Any, Any] | None = None) -> _Elem
         return clone
 
     clone: _Element = fold(copy, root, lambda element: [child for _, child in contents(element)])
+    for user, name, value in references:
+        if value in known:  # A reference to an element inside, such as a state, refers to its copy.
+            setattr(user, name, known[value])
     return clone

@@ -120,7 +120,7 @@ _OPERAND_TYPES = {
 def fitting_operands(expression: ex.Expression, model: Model) -> Iterator[Fault]:
     """Check the operators of an sct or rosgraph model, whose operands all have one type."""
     row, parts = operator_of(expression), operands(expression)
-    if isinstance(expression, (robosc.Access, robosc.ObjectValue)):
+    if isinstance(expression, (robosc.Access, robosc.IntegerText, robosc.ObjectValue)):
         yield expression, f"{type(expression).__name__} is allowed only in a robosc model"
     elif isinstance(expression, ex.Conditional):
         yield from model.unlike(expression.condition, BOOLEAN)

@@ -59,6 +59,34 @@ def _communication(reference: robosc.CommunicationReference, _model: Model) -> I
         yield reference, f"the component of '{reference.communicationType.name}' is missing"
     elif reference.communicationType not in _definitions(component):
         yield reference, f"'{reference.communicationType.name}' is not a communication of '{component.name}'"
+    yield from _index(reference)
+
+
+def _index(reference: robosc.CommunicationReference | robosc.Access) -> Iterator[Fault]:
+    """Check that a fleet has an index, and any other component none."""
+    item = reference.item if isinstance(reference, robosc.Access) else None
+    if isinstance(item, robosc.RequirementState):
+        return
+    component = reference.component or item
+    is_fleet = isinstance(component, robosc.Component) and component.first is not None
+    if is_fleet != (reference.index is not None):
+        yield reference, "an index follows the name of a fleet, and only that"
+
+
+def _fleet(component: robosc.Component, _model: Model) -> Iterator[Fault]:
+    parts = (component.first, component.last, component.number)
+    if len({part is None for part in parts}) > 1:
+        yield component, f"the fleet '{component.name}' lacks its first or last instance or its number"
+    elif component.first is not None and (component.parameters or isinstance(component.type, robosc.LocalComponent)):
+        yield component, f"the fleet '{component.name}' has a text or parameters of its own"
+
+
+def _each(definition: robosc.StatedDefinition, _model: Model) -> Iterator[Fault]:
+    template = definition.template
+    if template is None or template.parameters:
+        return
+    if template.eContainer() is around(definition, robosc.Base):
+        yield definition, f"'{template.name}' is not a template"
 
 
 def _running(access: robosc.Access, item: robosc.CommunicationType) -> Iterator[Fault]:
@@ -73,6 +101,7 @@ def _running(access: robosc.Access, item: robosc.CommunicationType) -> Iterator[
 
 def _access(access: robosc.Access, _model: Model) -> Iterator[Fault]:
     item = access.item
+    yield from _index(access)
     if isinstance(item, (robosc.State, robosc.Variable)):
         component = _owner(access)
         if component is None:
@@ -121,7 +150,10 @@ def _owner(reference: robosc.CommunicationReference | robosc.Access) -> robosc.C
 
 
 def _stands_for_an_instance(component: robosc.Component, reference: Any) -> bool:
-    """Return whether a reference is in the body of an `all`, `any` or `count` over the instances of a component."""
+    """Return whether a component stands for its instances: in an `all`, `any` or `count`, or a text with `each`."""
+    definition: Any = around(reference, robosc.StatedDefinition)
+    if definition is not None and definition.template is component:
+        return True
     quantifier: Any = around(reference, robosc.InstanceQuantifier)
     while quantifier is not None and quantifier.template is not component:
         quantifier = around(quantifier, robosc.InstanceQuantifier)
@@ -156,6 +188,8 @@ _OWN_OBJECT = demand(
 #: The other checks follow imports. They are skipped if an import is broken.
 IMPORT_CHECKS: Checks = {robosc.InstantiatedComponent: [_check_instance], robosc.ImportedComponent: [_check_instance]}
 CHECKS: Checks = {
+    robosc.Component: [_fleet],
+    robosc.StatedDefinition: [_each],
     robosc.Transition: [_OWN_TARGET],
     robosc.CommunicationReference: [_communication],
     robosc.ComplexDataTypeReference: [_DATA_TYPE],

@@ -10,12 +10,13 @@ from robosc.base.diagnostics import Diagnostic, Span
 from robosc.run.scenario_tests.reading import RULE
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from robosc.model import expression as ex
     from robosc.model import sct
     from robosc.run.scenario_tests.reading import Holds
 
+_NAME = re.compile(r"(?<![\w.\"])[A-Za-z_]\w*")
 _NAMED = re.compile(r"`([\w.]+)`")
 
 
@@ -52,10 +53,17 @@ class ExtendedText:
         return [declared.condition for declared in properties]
 
 
-def add_conditions(text: str, end: int, conditions: Sequence[Holds]) -> ExtendedText:
-    """Return the text of a robot that ends at an offset, with the conditions added before its closing brace."""
+def add_conditions(text: str, end: int, conditions: Sequence[Holds], instances: Mapping[str, str]) -> ExtendedText:
+    """Return the text of a robot that ends at an offset, with the conditions added before its closing brace.
+
+    `instances` maps the names of the instances of fleets to their texts in a model: `Cell2` to `Cell[2]`.
+    """
     brace = text.rindex("}", 0, end)
-    lines = "".join(f"{_before(number)}{condition.text})\n" for number, condition in enumerate(conditions))
+    texts = (
+        _NAME.sub(lambda match: instances.get(match[0], match[0]), condition.text) if instances else condition.text
+        for condition in conditions
+    )
+    lines = "".join(f"{_before(number)}{condition})\n" for number, condition in enumerate(texts))
     return ExtendedText(f"{text[:brace]}\n{lines}{text[brace:]}", text.count("\n", 0, brace) + 2, conditions)
 
 

@@ -17,6 +17,7 @@ from robosc.model import rosgraph, sct
 from robosc.model.semantics.evaluation import evaluate
 from robosc.model.semantics.failures import possible_reasons
 from robosc.model.semantics.messages import holds_objects
+from robosc.model.semantics.naming import output_name
 from robosc.model.semantics.roles import event_name, plant_of
 from robosc.run.node_tests.drive import LATENESS, Drive
 from robosc.run.node_tests.messages import leaf_values
@@ -505,9 +506,9 @@ class Player(Drive):
         if by in (None, Blocked.PLANT, Blocked.ASSUMPTION):
             why = "it is allowed" if by is None else _WHY[by]
             return line.fault(f"the {phrase} is not forbidden: {why}", self._state())
+        named = "" if line.by is None else output_name(line.by)
         if line.by is None or any(
-            line.by in (requirement.name, requirement.text) or line.by in (requirement.text or "")
-            for requirement in failing
+            requirement.name in (named, line.by) or line.by in (requirement.text or "") for requirement in failing
         ):
             return None
         others = quote_requirements(failing) if failing else "synthesis"

@@ -12,6 +12,7 @@ from robosc.analysis.explain import NamingError, find_event
 from robosc.base.diagnostics import Diagnostic, Severity, Span
 from robosc.base.files.json_reading import JsonError, json_lines, json_value
 from robosc.model.semantics.failures import brings_data
+from robosc.model.semantics.naming import output_name
 from robosc.model.semantics.roles import event_name, plant_of
 from robosc.model.semantics.steps import FIRST_WORDS, TIME, StepError, seconds_in_words, step_in_words
 from robosc.run.simulation.data import DataError
@@ -132,6 +133,7 @@ class _Line:
             if logged is None:
                 return None
             name, data = logged.get("event"), logged.get("data", {})
+            name = output_name(name) if isinstance(name, str) else name
             if not isinstance(name, str) or not isinstance(data, dict):
                 self._fault(self._start, 'expected an object like {"event": "...", "data": {"value": ...}}')
                 return None
@@ -146,7 +148,7 @@ class _Line:
                 else None
             )
         name, _, rest = self._line[self._start :].partition(" ")
-        name = name.rstrip()
+        name = output_name(name.rstrip())
         if self._names.model is not None and name in FIRST_WORDS and name not in self._names.events:
             return self._in_words(self._names.model, name)
         known = self._known(name, self._start)

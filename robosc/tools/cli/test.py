@@ -24,6 +24,7 @@ from robosc.language.reading import read as read_text
 from robosc.language.text import Documents, decode
 from robosc.m2t.models import Models, TraceTest
 from robosc.m2t.targets import TARGETS
+from robosc.model.semantics.instances import Instances
 from robosc.run.node_tests.trace_test import player_files
 from robosc.run.scenario_tests import RULE, LiveError, LiveNode, Player, read_scenarios, unfit_data, unknown_events
 from robosc.run.scenario_tests.conditions import add_conditions
@@ -240,7 +241,8 @@ def _resolve_conditions(
     text, _ = decode(path, files.read(path))
     assert plain.robosc is not None
     span = plain.robosc.source.span  # type: ignore[union-attr]  # a model from a text has a place
-    longer = add_conditions(text.content, text.offset(span.end_line, span.end_column), conditions)
+    end = text.offset(span.end_line, span.end_column)
+    longer = add_conditions(text.content, end, conditions, Instances(plain.robosc).fleet_texts)
     types = RosTypes(paths.interfaces)
     reading = read_text(path, paths.libraries, types, Documents({path: longer.text}))
     findings = [*reading.findings, *(check(reading.base, reading.findings, types) if reading.base else ())]

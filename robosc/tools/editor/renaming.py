@@ -12,6 +12,7 @@ from pygls.exceptions import JsonRpcException
 from robosc.base.diagnostics import Edit
 from robosc.language.checks.automatic_edits import objection
 from robosc.language.tokens import is_name
+from robosc.model import robosc as rsc
 from robosc.model.semantics.naming import escape_keyword
 from robosc.tools.editor.places import to_edits, to_offset, to_range
 from robosc.tools.editor.reading import occurrences
@@ -95,7 +96,8 @@ def renaming_of(file: File, edits: Collection[Edit]) -> Renaming | None:
 def _require_own(snapshot: Snapshot, analysis: Analysis, name: Reference) -> None:
     declared = analysis.declarations.get(name.target)
     if declared is None:
-        raise _refused(f"`{name.name}` is a name of ROS")
+        of_language = isinstance(name.target, rsc.FormalParameter)  # `number` in a fleet
+        raise _refused(f"`{name.name}` is a name of {'the language' if of_language else 'ROS'}")
     if Path(declared[0].text.file).resolve() not in snapshot.models():
         raise _refused(f"`{name.name}` is declared in {declared[0].text.file}, which is not in the editor's folders")
 

@@ -13,6 +13,7 @@ from lsprotocol import types
 from robosc.base.diagnostics import has_errors
 from robosc.language.document_symbols import outline
 from robosc.model import robosc as rsc
+from robosc.model.semantics.expansion import constant_value
 from robosc.tools.editor.answers import Request, Verdict
 from robosc.tools.editor.places import to_range
 
@@ -78,12 +79,14 @@ def communication_at(analysis: Analysis, offset: int) -> str | None:
     name = analysis.file.name_at(offset)
     if name is None or not isinstance(name.target, rsc.CommunicationType):
         return None
-    owner = name.user.component if isinstance(name.user, rsc.CommunicationReference) else None
+    reference = name.user if isinstance(name.user, rsc.CommunicationReference) else None
+    owner = reference.component if reference is not None else None
+    number = constant_value(reference.index) if reference is not None else None
     around: Any = name.target
     while owner is None and around is not None:
         around = around.eContainer()
         owner = around if isinstance(around, rsc.Component) else None
-    return f"{owner.name}.{name.target.name}" if owner is not None else None
+    return None if owner is None else f"{owner.name}{'' if number is None else number}.{name.target.name}"
 
 
 def _all(items: Sequence[Item]) -> list[Item]:

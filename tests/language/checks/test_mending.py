@@ -73,6 +73,11 @@ TEXTS = {
   }
 }
 """,
+    "each": """robot R {
+  component C { incoming message m with type: none }
+  requirement P each C: m needs true
+}
+""",
     "calls": """robot R {
   component C { service s with request: none, response: none }
   component D { incoming message m with type: none }
@@ -109,6 +114,14 @@ TOLD = {
         "declare a `constant` for the whole string",
         "declare `datatype object",
         "declare `interface",
+        "name the topic with a parameter",
+        "rename the fleet, or the other element",
+        'use a separate topic, such as `with { arm_done: "/arm" + text(number)',
+        "write `Side[1]` or `Front` in",
+        "write the condition with `Front` itself",
+        "write `text(i)` with an integer",
+        "write `requirement each T: …` for each instance",
+        "write one instance in the brackets",
         "declare `variable",
         "declare an object",
         "declare it from the object that has the array",

@@ -50,7 +50,7 @@ def leaves(node: Node) -> Iterator[Node]:
 
 def is_word(leaf: Node) -> bool:
     word = str(getattr(leaf.rule, "to_match", ""))
-    return (word.isalpha() and word == leaf.value) or leaf.rule_name in ("BuiltIn", "Quantifier")
+    return (word.isalpha() and word == leaf.value) or leaf.rule_name in ("BuiltIn", "Each", "Quantifier")
 
 
 def coloured(text: str) -> Words:
@@ -106,6 +106,7 @@ def test_the_table_has_the_words_of_the_grammar() -> None:
         ("0..value", ["value"]),
         ("'goto' // goto\n/* goto\n goto */", []),
         ("send: change", ["send", "change"]),
+        ("requirement each: each Station: x after each y", ["requirement", "each", "after", "each"]),
         ("send", []),
     ],
 )

@@ -485,3 +485,20 @@ def test_functions_of_a_robosc_model() -> None:
     condition = ex.FunctionCall(function="median", arguments=[ex.IntegerLiteral(value=1)])
     requirement = robosc.NeedsRequirement(condition=condition)
     assert messages(robosc.Robot(name="R", definitions=[requirement])) == ["there is no function 'median'"]
+
+
+def test_fleets_of_a_robosc_model() -> None:
+    fleet = robosc.Component(name="C", first=ex.IntegerLiteral(value=1), type=robosc.LocalComponent())
+    robot = robosc.Robot(name="R", definitions=[fleet])
+    assert messages(robot) == ["the fleet 'C' lacks its first or last instance or its number"]
+    fleet.last = ex.IntegerLiteral(value=2)
+    fleet.number = robosc.FormalParameter(name="number", type=robosc.IntegerDataType())
+    assert messages(robot) == ["the fleet 'C' has a text or parameters of its own"]
+    condition = robosc.Access(item=fleet)
+    robot.definitions.append(
+        robosc.StateInvariant(kind=robosc.InvariantKind.never, condition=condition, template=fleet)
+    )
+    assert messages(robot)[1:] == [
+        "'C' is not a template",
+        "an index follows the name of a fleet, and only that",
+    ]

@@ -40,7 +40,7 @@ class Instance:
     name: str
     text: robosc.Component
     arguments: Mapping[robosc.FormalParameter, tuple[ex.Expression, Environment]] = field(default_factory=dict)
-    remapped: Mapping[robosc.CommunicationType, robosc.TopicRemapping] = field(default_factory=dict)
+    remapped: Mapping[robosc.CommunicationType, tuple[robosc.TopicRemapping, Environment]] = field(default_factory=dict)
 
     def of(self, kind: type[_Definition]) -> list[_Definition]:
         """Return the definitions of a kind, in the order of the text."""
@@ -58,9 +58,17 @@ class Instance:
         """Plant of the behavior."""
         return Plant("behaviour", self.name)
 
+    @property
+    def place(self) -> Environment:
+        """Context of the component's text."""
+        return Environment(self, self.arguments)
+
 
 class Environment(NamedTuple):
-    """Context of an expression: the instance that contains it, bound parameters, and quantified instances."""
+    """Context of an expression: the instance that contains it, bound parameters, and quantified instances.
+
+    A template before which `each` stands is at hand, too.
+    """
 
     within: Instance | None = None
     bound: Mapping[robosc.FormalParameter, tuple[ex.Expression, Environment]] = {}
@@ -79,34 +87,64 @@ class Names:
 
     def __init__(self, robot: robosc.Base) -> None:
         self.robot = robot
-        self._of: dict[robosc.Component, Instance] = {}
-        for component in robot.definitions:
-            if isinstance(component, robosc.Component) and not component.parameters:
-                self._of[component] = _instance(component)
-        self.observers: dict[tuple[robosc.Requirement, Instance | None], Plant] = {
-            requirement: Plant("requirement", str(number))
-            for number, requirement in enumerate(
-                (
-                    requirement
-                    for requirement in self.definitions(robosc.Requirement)
-                    if isinstance(requirement[0], OBSERVERS)
-                ),
-                start=1,
-            )
-        }
-        self.assumptions = self._assumptions()
         self._meanings: dict[ex.Expression, Meaning | Data] = {}
         self._changing: dict[ex.Expression, bool] = {}
+        #: Instances by component and number. The number of a component that is no fleet is None.
+        self._of: dict[tuple[robosc.Component, int | None], Instance] = {}
+        for component in robot.definitions:
+            if isinstance(component, robosc.Component) and not component.parameters:
+                for number in self._numbers(component):
+                    self._of[component, number] = _instance(component, number)
+        #: Plants of the requirements with states of their own, by their automaton and context.
+        self.observers: dict[tuple[robosc.Requirement, Instance | None, Instance | None], Plant] = {}
+        for requirement, place in self.definitions(robosc.Requirement):
+            if isinstance(requirement, OBSERVERS):
+                number = len(self.observers) + 1
+                self.observers[self._observer(requirement, place)] = Plant("requirement", str(number))
+        self.assumptions = self._assumptions()
 
     def __iter__(self) -> Iterator[Instance]:
         return iter(self._of.values())
 
-    def definitions(self, kind: type[_Definition]) -> list[tuple[_Definition, Instance | None]]:
-        """Return definitions outside of components, then those in each component."""
-        outside = [(definition, None) for definition in self.robot.definitions if isinstance(definition, kind)]
-        return [*outside, *((definition, instance) for instance in self for definition in instance.of(kind))]
+    def _numbers(self, component: robosc.Component) -> Sequence[int | None]:
+        """Return the numbers of a component's instances: a fleet has several, any other component one without."""
+        if component.first is None or component.last is None:
+            return [None]
+        first, last = (self.constant(bound, Environment()) for bound in (component.first, component.last))
+        return range(first, last + 1)
 
-    def _assumptions(self) -> list[tuple[robosc.Assumption, Instance | None]]:
+    def definitions(self, kind: type[_Definition]) -> list[tuple[_Definition, Environment]]:
+        """Return definitions outside of components, then those in each component, with their context.
+
+        A definition with `each` is repeated: for every instance of its template.
+        """
+        texts: list[tuple[Any, Environment]] = [(definition, Environment()) for definition in self.robot.definitions]
+        texts += ((definition, instance.place) for instance in self for definition in instance.of(kind))
+        return [
+            (definition, each)
+            for definition, place in texts
+            if isinstance(definition, kind)
+            for each in self._repeated(definition, place)
+        ]
+
+    def _repeated(self, definition: Any, place: Environment) -> list[Environment]:
+        template = definition.template if isinstance(definition, robosc.StatedDefinition) else None
+        if template is None:
+            return [place]
+        return [place._replace(at_hand={template: instance}) for instance in self if instance.text is template]
+
+    def _observer(
+        self, requirement: robosc.Requirement, place: Environment
+    ) -> tuple[robosc.Requirement, Instance | None, Instance | None]:
+        """Return the key of a requirement at its own place."""
+        template = requirement.template
+        return requirement, place.within, None if template is None else place.at_hand[template]
+
+    def observer(self, requirement: robosc.Requirement, place: Environment) -> Plant:
+        """Return the plant of a requirement with states of its own, at its own place."""
+        return self.observers[self._observer(requirement, place)]
+
+    def _assumptions(self) -> list[tuple[robosc.Assumption, Environment]]:
         """Return the assumptions. One outside of the components of a library is about each import of its component."""
         assumptions = self.definitions(robosc.Assumption)
         for instance in self:
@@ -115,22 +153,24 @@ class Names:
                 if isinstance(assumption, robosc.Assumption):
                     first = assumption.target.events[0].communicationType
                     if first.component is instance.text:
-                        assumptions.append((assumption, instance))
+                        assumptions.append((assumption, instance.place))
         return assumptions
 
     def port(
-        self, reference: robosc.CommunicationReference, within: Instance | None
+        self, reference: robosc.CommunicationReference, place: Environment
     ) -> tuple[Instance, robosc.CommunicationType]:
         """Return the instance and the communication that a reference names."""
-        return self._instance_of(reference.component, Environment(within)), reference.communicationType
+        return self._instance_of(reference.component, place, reference.index), reference.communicationType
 
-    def _instance_of(self, component: robosc.Component | None, place: Environment) -> Instance:
+    def _instance_of(
+        self, component: robosc.Component | None, place: Environment, index: ex.Expression | None = None
+    ) -> Instance:
         if component is not None and component in place.at_hand:
             return place.at_hand[component]
         if place.within is not None and (component is None or component is place.within.text):
             return place.within
         assert component is not None
-        return self._of[component]
+        return self._of[component, None if index is None else self.constant(index, place)]
 
     def written_out(self, expression: ex.Expression, place: Environment) -> ex.Expression:
         """Return a new expression without names of expressions; `meaning` resolves its references."""
@@ -155,7 +195,8 @@ class Names:
         """Return the ROS name if the expression is a parameter, else None."""
         if not isinstance(expression, robosc.Access) or not isinstance(expression.item, robosc.Parameter):
             return None
-        owner = f"{self._instance_of(expression.component, place).name}." if _is_member(expression.item) else ""
+        is_member = _is_member(expression.item)
+        owner = f"{self._instance_of(expression.component, place, expression.index).name}." if is_member else ""
         return f"{owner}{expression.item.name}"
 
     def settings(self, expression: ex.Expression, place: Environment) -> tuple[float, float, float]:
@@ -165,7 +206,7 @@ class Names:
         assert isinstance(parameter, robosc.Parameter)
         inside = Environment()
         if _is_member(parameter):
-            inside = self._inside(parameter, self._instance_of(expression.component, place))
+            inside = self._inside(parameter, self._instance_of(expression.component, place, expression.index))
         whole = self.domain(parameter.type, inside)
         first = self.constant(parameter.value, inside)
         if isinstance(whole, range):
@@ -176,8 +217,8 @@ class Names:
 
     def topic(self, instance: Instance, communication: robosc.CommunicationType) -> str:
         """Return the ROS name of a communication: by its import `with`, by its identifier, or its own name."""
-        named: Any = instance.remapped.get(communication, communication)
-        place = Environment() if communication in instance.remapped else Environment(instance, instance.arguments)
+        named: Any
+        named, place = instance.remapped.get(communication, (communication, instance.place))
         topic = named.identifier if named.computedIdentifier is None else self.constant(named.computedIdentifier, place)
         return str(topic or communication.name)
 
@@ -211,6 +252,9 @@ class Names:
                 return (yield from self._quantified(expression, place))
             case robosc.ErrorReason():
                 return self.leaf(Data(("error",), None))
+            case robosc.IntegerText():
+                number = yield expression.operand, place
+                return ex.StringLiteral(value=str(evaluate(number, self._meanings.__getitem__)))
             case robosc.ArrayQuantifier():
                 array = yield expression.array, place
                 body = yield expression.body, place
@@ -238,14 +282,13 @@ class Names:
                 return self.leaf(Literal(item.name))
             case robosc.Parameter():
                 # A parameter is data, because only the node computes with it: the supervisor reads none.
-                owner = (access.component.name, ".") if access.component else ()
+                named = self._instance_of(access.component, place, access.index) if access.component else None
+                owner = (named.name, ".") if named is not None else ()
                 return self.leaf(Data((*owner, item.name), None))
             case robosc.RequirementState():
-                automaton = item.eContainer()
-                inside = isinstance(automaton.eContainer(), robosc.LocalComponent)
-                plant = self.observers[automaton, place.within if inside else None]
-                return self.leaf(At(Slot(plant), item.name))
-        instance = self._instance_of(access.component, place) if access.component or _is_member(item) else None
+                return self.leaf(At(Slot(self._automaton(access, item.eContainer(), place)), item.name))
+        is_member = access.component is not None or _is_member(item)
+        instance = self._instance_of(access.component, place, access.index) if is_member else None
         match item:
             case robosc.State() if instance is not None:
                 return self.leaf(At(Slot(instance.plant), item.name))
@@ -257,6 +300,14 @@ class Names:
             raise NotReadError(item)
         value: ex.Expression = yield item.value, self._inside(item, instance)
         return self._folded(value) if isinstance(item, robosc.Constant) else value
+
+    def _automaton(self, access: robosc.Access, automaton: robosc.AutomatonRequirement, place: Environment) -> Plant:
+        """Return the plant of an automaton: with `each`, that of the instance in brackets or at hand."""
+        inside = isinstance(automaton.eContainer(), robosc.LocalComponent)
+        instance = None if automaton.template is None else place.at_hand.get(automaton.template)
+        if isinstance(access.index, robosc.Access) and isinstance(access.index.item, robosc.Component):
+            instance = self._instance_of(access.index.item, place, access.index.index)
+        return self.observers[automaton, place.within if inside else None, instance]
 
     def _running(self, call: robosc.Service | robosc.Action, instance: Instance) -> ex.Expression:
         """Return the condition that a service or action was requested and its end is not known."""
@@ -272,7 +323,7 @@ class Names:
 
     def _inside(self, named: robosc.NamedExpression, owner: Instance | None) -> Environment:
         """Return the context of a definition's text."""
-        return Environment(owner, owner.arguments) if owner is not None and _is_member(named) else Environment()
+        return owner.place if owner is not None and _is_member(named) else Environment()
 
     def _quantified(
         self, quantifier: robosc.InstanceQuantifier, place: Environment
@@ -363,21 +414,25 @@ def _is_member(item: Any) -> bool:
     return isinstance(item, robosc.State | robosc.Variable) or isinstance(item.eContainer(), robosc.LocalComponent)
 
 
-def _instance(component: robosc.Component) -> Instance:
-    """Return the instance of a component, with the arguments along the chain of `is` and `import`."""
+def _instance(component: robosc.Component, number: int | None) -> Instance:
+    """Return an instance of a component, with the arguments along the chain of `is` and `import`."""
     arguments: dict[robosc.FormalParameter, tuple[ex.Expression, Environment]] = {}
-    remapped: dict[robosc.CommunicationType, robosc.TopicRemapping] = {}
+    remapped: dict[robosc.CommunicationType, tuple[robosc.TopicRemapping, Environment]] = {}
+    own: dict[robosc.FormalParameter, tuple[ex.Expression, Environment]] = {}
+    if number is not None and component.number is not None:
+        own[component.number] = ex.IntegerLiteral(value=number), Environment()
     text = component
     while not isinstance(text.type, robosc.LocalComponent):
         instantiation = text.type
         assert isinstance(instantiation, robosc.InstantiatedComponent | robosc.ImportedComponent)
         text = instantiation.definition
-        outside = Environment(bound=dict(arguments))
+        outside = Environment(bound={**own, **arguments})
         for position, argument in enumerate(instantiation.arguments):
             arguments[argument.parameter or text.parameters[position]] = argument.value, outside
         for parameter in text.parameters:
             if parameter.default is not None and parameter not in arguments:
                 arguments[parameter] = parameter.default, Environment()
         for remapping in instantiation.remappings if isinstance(instantiation, robosc.ImportedComponent) else ():
-            remapped.setdefault(remapping.communicationType, remapping)
-    return Instance(component.name, text, arguments, remapped)
+            remapped.setdefault(remapping.communicationType, (remapping, outside))
+    name = component.name if number is None else f"{component.name}{number}"
+    return Instance(name, text, arguments, remapped)

@@ -123,8 +123,9 @@ class _TextReading:
         self.provided()
         self.assumed()
         self.required()
-        for (requirement, within), plant in self.names.observers.items():
-            self.observer(requirement, within, plant)
+        for requirement, place in self.names.definitions(robosc.Requirement):
+            if isinstance(requirement, OBSERVERS):
+                self.observer(requirement, place, self.names.observer(requirement, place))
         self.claims()
         return self.machine
 
@@ -168,8 +169,8 @@ class _TextReading:
         self.machine.events[EventName(plant, name)] = event
         return event
 
-    def of(self, reference: robosc.CommunicationReference, named: str, within: Instance | None) -> EventName:
-        return EventName(_plant(*self.names.port(reference, within)), named)
+    def of(self, reference: robosc.CommunicationReference, named: str, place: Environment) -> EventName:
+        return EventName(_plant(*self.names.port(reference, place)), named)
 
     # Components
 
@@ -183,14 +184,14 @@ class _TextReading:
         for variable in instance.behaviour(robosc.Variable):
             slot = Slot(instance.plant, variable.name)
             if slot in self.plants.domains:
-                domain = self.names.domain(variable.type, Environment(instance, instance.arguments))
+                domain = self.names.domain(variable.type, instance.place)
                 if domain is None:
                     raise UnlikeError(f"the plants hold `{instance.name}.{variable.name}`, which has no end", variable)
                 self.slot(slot, domain, self.first_value(variable, domain, instance), variable)
 
     def first_value(self, variable: robosc.Variable, domain: Domain, instance: Instance) -> Value:
         if variable.initial is not None:
-            value = self.names.constant(variable.initial, Environment(instance, instance.arguments))
+            value = self.names.constant(variable.initial, instance.place)
             return saturate(value, domain)
         if isinstance(variable.type, robosc.ComplexDataTypeReference):
             assert isinstance(variable.type.type, robosc.EnumDataType)
@@ -209,7 +210,7 @@ class _TextReading:
             for transition in [definition] if state is None else state.transitions:
                 assert isinstance(transition, robosc.Transition)
                 if isinstance(transition, robosc.ResultTransition):
-                    name = self.of(transition.communicationType, _NAMED[transition.resultType], instance)
+                    name = self.of(transition.communicationType, _NAMED[transition.resultType], instance.place)
                 else:
                     kind = type(transition)
                     numbers[kind] += 1
@@ -231,8 +232,8 @@ class _TextReading:
             self.machine.events[name].participants.append(self.reaction(name, ordered, instance, ignored))
 
     def timer(self, transition: robosc.TimedTransition, where: str | None, instance: Instance) -> Timer:
-        without = frozenset(self.of(message, "u_response", instance) for message in transition.without)
-        environment, unit = Environment(instance, instance.arguments), _UNITS[transition.unit]
+        without = frozenset(self.of(message, "u_response", instance.place) for message in transition.without)
+        environment, unit = instance.place, _UNITS[transition.unit]
         parameter = self.names.parameter(transition.duration, environment)
         if parameter is not None:
             # The node rounds parameter values like doubles, halves up.
@@ -283,13 +284,13 @@ class _TextReading:
         self, transition: robosc.Transition, name: EventName, instance: Instance
     ) -> tuple[Condition | None, EventEffect, list[tuple[Slot, Condition]]]:
         guard = transition.guard if isinstance(transition, robosc.GuardedTransition) else None
-        condition = None if guard is None else self.condition(guard, instance, name)
+        condition = None if guard is None else self.condition(guard, instance.place, name)
         writes = {} if transition.target is None else {Slot(instance.plant): transition.target.name}
         assigned: dict[Slot, Condition] = {}
         for assignment in transition.assignments:
             slot = Slot(instance.plant, assignment.item.item.name if assignment.item.item else "")
             if slot in self.plants.domains:
-                assigned[slot] = self.condition(assignment.value, instance, name, slot)
+                assigned[slot] = self.condition(assignment.value, instance.place, name, slot)
         return condition, EventEffect(writes, transition), list(assigned.items())
 
     # Expressions
@@ -297,12 +298,11 @@ class _TextReading:
     def condition(
         self,
         expression: ex.Expression,
-        within: Instance | None,
+        place: Environment,
         name: EventName | None = None,
         assigned: Slot | None = None,
     ) -> Condition:
         """Return an expression in the text of an instance, in a transition on an event, as a condition."""
-        place = Environment(within, within.arguments if within else {})
         written = self.names.written_out(expression, place)
         if name is not None:
             present = None if assigned is None else self.present(written, name)
@@ -391,7 +391,7 @@ class _TextReading:
             declared = communication.feedbackType if feedback else communication.responseType
         for part in path:
             declared = next(field.type for field in declared.type.properties if field.name == part)
-        domain = self.names.domain(declared, Environment(instance, instance.arguments))
+        domain = self.names.domain(declared, instance.place)
         return () if domain is None else domain
 
     # Provided data
@@ -401,19 +401,19 @@ class _TextReading:
 
         Statements outside of components replace those inside.
         """
-        by_port: dict[_Port, list[tuple[robosc.ProvideStatement, Instance | None]]] = {}
-        for statement, within in self.names.definitions(robosc.ProvideStatement):
-            by_port.setdefault(self.names.port(statement.communicationType, within), []).append((statement, within))
+        by_port: dict[_Port, list[tuple[robosc.ProvideStatement, Environment]]] = {}
+        for statement, place in self.names.definitions(robosc.ProvideStatement):
+            by_port.setdefault(self.names.port(statement.communicationType, place), []).append((statement, place))
         for port, statements in by_port.items():
-            outside = [statement for statement in statements if statement[1] is None]
+            outside = [statement for statement in statements if statement[1].within is None]
             self.choice(Plant("data", _plant(*port).origin), outside or statements)
 
-    def choice(self, plant: Plant, statements: Sequence[tuple[robosc.ProvideStatement, Instance | None]]) -> None:
+    def choice(self, plant: Plant, statements: Sequence[tuple[robosc.ProvideStatement, Environment]]) -> None:
         names = ("none", *(f"d{number}" for number in range(1, len(statements) + 1)))
         slot = self.locations(plant, names, "none", names, statements[0][0])
         conditions = [
-            (None if statement.condition is None else self.condition(statement.condition, within), statement)
-            for statement, within in statements
+            (None if statement.condition is None else self.condition(statement.condition, place), statement)
+            for statement, place in statements
         ]
         for location, (condition, statement) in zip(names[1:], conditions, strict=True):
             event = self.event(plant, f"c_{location}", statement)
@@ -427,10 +427,10 @@ class _TextReading:
 
     def assumed(self) -> None:
         """Add assumptions: their events are possible only where the condition holds, whatever else allows them."""
-        for number, (assumption, within) in enumerate(self.names.assumptions, start=1):
-            plant, condition = Plant("assumption", str(number)), self.condition(assumption.condition, within)
+        for number, (assumption, place) in enumerate(self.names.assumptions, start=1):
+            plant, condition = Plant("assumption", str(number)), self.condition(assumption.condition, place)
             self.locations(plant, ("holding",), "holding", ["holding"], assumption)
-            for name in dict.fromkeys(self.named(event, within) for event in assumption.target.events):
+            for name in dict.fromkeys(self.named(event, place) for event in assumption.target.events):
                 self.machine.events[name].participants.append(_only_where(condition, assumption))
 
     # Requirements
@@ -445,11 +445,11 @@ class _TextReading:
             if not isinstance(requirement, known):
                 raise NotReadError(requirement)
         starting: dict[EventName, list[Restriction]] = {}
-        for statement, within in self.names.definitions(robosc.CommunicationRequirement):
+        for statement, place in self.names.definitions(robosc.CommunicationRequirement):
             value = not isinstance(statement, robosc.DisablesRequirement)
-            condition = self.condition(statement.condition, within)
+            condition = self.condition(statement.condition, place)
             for name in dict.fromkeys(
-                self.of(reference, "c_trigger", within) for reference in statement.target.communicationTypes
+                self.of(reference, "c_trigger", place) for reference in statement.target.communicationTypes
             ):
                 starting.setdefault(name, []).append(Restriction(condition, value, statement))
         for name, restrictions in starting.items():
@@ -459,12 +459,15 @@ class _TextReading:
                 event.restrictions.append(_broken(starting.get(EventName(name.plant, "c_trigger"), []), event.element))
 
     def observer_slots(self) -> None:
-        for (requirement, within), plant in self.names.observers.items():
+        for requirement, place in self.names.definitions(robosc.Requirement):
+            if not isinstance(requirement, OBSERVERS):
+                continue
+            plant = self.names.observer(requirement, place)
             if isinstance(requirement, robosc.OrderRequirement):
                 self.locations(plant, ("waiting", "ready"), "waiting", ("waiting", "ready"), requirement)
             elif isinstance(requirement, robosc.CountRequirement):
                 self.locations(plant, ("counting",), "counting", ["counting"], requirement)
-                most = self.names.constant(requirement.bound, Environment(within, within.arguments if within else {}))
+                most = self.names.constant(requirement.bound, place)
                 self.slot(Slot(plant, "count"), range(most + 1), 0, requirement)
             else:
                 assert isinstance(requirement, robosc.AutomatonRequirement)
@@ -473,23 +476,23 @@ class _TextReading:
                 marked = [state.name for state in requirement.states if state.marked] or names
                 self.locations(plant, names, initial, marked, requirement)
 
-    def named(self, reference: robosc.EventReference, within: Instance | None) -> EventName:
+    def named(self, reference: robosc.EventReference, place: Environment) -> EventName:
         """Return the named event, the request, or the arrival of an outgoing message."""
         if isinstance(reference, robosc.NamedEvent):
-            return self.of(reference.communicationType, _NAMED[reference.resultType], within)
+            return self.of(reference.communicationType, _NAMED[reference.resultType], place)
         communication = reference.communicationType.communicationType
         comes = (
             isinstance(communication, robosc.Message) and communication.direction == robosc.MessageDirection.outgoing
         )
-        return self.of(reference.communicationType, "u_response" if comes else "c_trigger", within)
+        return self.of(reference.communicationType, "u_response" if comes else "c_trigger", place)
 
-    def observer(self, requirement: robosc.Requirement, within: Instance | None, plant: Plant) -> None:
+    def observer(self, requirement: robosc.Requirement, place: Environment, plant: Plant) -> None:
         if isinstance(requirement, robosc.AutomatonRequirement):
-            self.automaton(requirement, within, Slot(plant))
+            self.automaton(requirement, place, Slot(plant))
             return
         assert isinstance(requirement, robosc.OrderRequirement | robosc.CountRequirement)
-        anchor = self.named(requirement.anchor, within)
-        targets = dict.fromkeys(self.named(event, within) for event in requirement.target.events)
+        anchor = self.named(requirement.anchor, place)
+        targets = dict.fromkeys(self.named(event, place) for event in requirement.target.events)
         events = self.machine.events
         slot = Slot(plant) if isinstance(requirement, robosc.OrderRequirement) else Slot(plant, "count")
         allowed = At(slot, "ready")
@@ -508,10 +511,10 @@ class _TextReading:
     def is_at(self, place: At) -> Condition:
         return compile_condition(self.names.leaf(place), lambda _: place)
 
-    def automaton(self, requirement: robosc.AutomatonRequirement, within: Instance | None, slot: Slot) -> None:
+    def automaton(self, requirement: robosc.AutomatonRequirement, place: Environment, slot: Slot) -> None:
         """Add a requirement automaton: an event without a transition with a true condition is forbidden."""
         alphabet = {
-            self.named(transition.event, within): transition
+            self.named(transition.event, place): transition
             for state in requirement.states
             for transition in state.transitions
         }
@@ -519,12 +522,12 @@ class _TextReading:
             ways = {
                 state.name: [
                     (
-                        None if transition.guard is None else self.condition(transition.guard, within, name),
+                        None if transition.guard is None else self.condition(transition.guard, place, name),
                         transition.target.name if transition.target else state.name,
                         transition,
                     )
                     for transition in state.transitions
-                    if self.named(transition.event, within) == name
+                    if self.named(transition.event, place) == name
                 ]
                 for state in requirement.states
             }
@@ -537,27 +540,25 @@ class _TextReading:
 
     def claims(self) -> None:
         """Read the conditions of `never`, `always`, `reachable`, and of properties."""
-        for invariant, within in self.names.definitions(robosc.StateInvariant):
+        for invariant, place in self.names.definitions(robosc.StateInvariant):
             value = invariant.kind == robosc.InvariantKind.always
-            self.claim("the condition of an invariant", invariant.condition, within, value, invariant)
-        for required, within in self.names.definitions(robosc.ReachabilityRequirement):
-            self.claim("the reachable condition of a requirement", required.condition, within, True, required)
+            self.claim("the condition of an invariant", invariant.condition, place, value, invariant)
+        for required, place in self.names.definitions(robosc.ReachabilityRequirement):
+            self.claim("the reachable condition of a requirement", required.condition, place, True, required)
             # Without `from`, a way to the condition exists in every state.
             where = ex.BooleanLiteral(value=True) if required.premise is None else required.premise
-            self.claim("the condition after `from` of a requirement", where, within, True, required)
-        for claimed, within in self.names.definitions(robosc.Property):
+            self.claim("the condition after `from` of a requirement", where, place, True, required)
+        for claimed, place in self.names.definitions(robosc.Property):
             if isinstance(claimed, robosc.InvariantProperty):
                 value = claimed.kind == robosc.InvariantKind.always
-                self.claim("the condition of a property", claimed.condition, within, value, claimed)
+                self.claim("the condition of a property", claimed.condition, place, value, claimed)
             elif isinstance(claimed, robosc.ReachabilityProperty):
-                self.claim("the reachable condition of a property", claimed.condition, within, True, claimed)
+                self.claim("the reachable condition of a property", claimed.condition, place, True, claimed)
                 start = claimed.premise or ex.BooleanLiteral(value=True)
-                self.claim("the start condition of a property", start, within, True, claimed)
+                self.claim("the start condition of a property", start, place, True, claimed)
 
-    def claim(
-        self, what: str, expression: ex.Expression, within: Instance | None, value: bool, source: ex.Located
-    ) -> None:
-        self.machine.conditions.append(Claim(what, self.condition(expression, within), value, source))
+    def claim(self, what: str, expression: ex.Expression, place: Environment, value: bool, source: ex.Located) -> None:
+        self.machine.conditions.append(Claim(what, self.condition(expression, place), value, source))
 
 
 def _plant(instance: Instance, communication: robosc.CommunicationType) -> Plant:

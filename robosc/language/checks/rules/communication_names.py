@@ -11,7 +11,7 @@ from robosc.language.checks.edits import Choice, Insertion, Removal, Renaming, R
 from robosc.language.checks.libraries import instances, reachable
 from robosc.language.checks.rule import Finding, rule
 from robosc.model import robosc as rsc
-from robosc.model.semantics.naming import escape_keyword
+from robosc.model.semantics.naming import NUMBER, TEXT_FUNCTION, escape_keyword
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -126,9 +126,9 @@ def _remapped_twice(base: rsc.Base) -> Iterator[Finding]:
 
 
 def _place(port: PortInstance, base: rsc.Base) -> ex.Located:
-    if port.instance.unit is base:
-        return port.communication
     component = port.instance.component
+    if port.instance.unit is base:
+        return component if port.instance.member is not None else port.communication
     assert isinstance(component.type, rsc.ImportedComponent)
     remappings = component.type.remappings
     return next((mapped for mapped in remappings if mapped.communicationType is port.communication), component)
@@ -137,6 +137,12 @@ def _place(port: PortInstance, base: rsc.Base) -> ex.Located:
 def _own_topic(port: PortInstance, base: rsc.Base) -> Hint:
     name = port.communication.name
     topic = f"/{port.instance.name.lower()}/{name}"
+    if port.instance.member is not None:
+        stem = f'"/{port.instance.component.name.lower()}" + {TEXT_FUNCTION}({NUMBER})'
+        if port.instance.unit is base:
+            template = port.instance.definition.name
+            return f"name the topic with a parameter of `{template}`, and give it `{stem}` as its argument"
+        return f'use a separate topic, such as `with {{ {name}: {stem} + "/{name}" }}` after the import'
     if port.instance.unit is base:
         return _identified(f'use a separate topic, such as `identifier: "{topic}"`', port.communication, topic)
     hint = f'use a separate topic, such as `with {{ {name}: "{topic}" }}` after the import'

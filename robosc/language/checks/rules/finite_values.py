@@ -16,6 +16,7 @@ from robosc.language.checks.definitions import (
     variables,
 )
 from robosc.language.checks.edits import Choice, Removal, Replacement, Together, part_of
+from robosc.language.checks.fleets import bounds
 from robosc.language.checks.libraries import Meaning, meanings
 from robosc.language.checks.rule import Finding, rule
 from robosc.language.checks.supervisor_limits import Fault, function_faults, readings, supervised_faults, table_faults
@@ -170,6 +171,7 @@ def integer_range(base: rsc.Base) -> Iterator[Finding]:
     """Integers that the supervisor needs have a range, ranges are not empty, and constants are within them."""
     yield from supervised_faults(base, _without_range)
     yield from supervised_faults(base, table_faults)
+    yield from bounds(base)
     for meaning in meanings(base):
         yield from _too_large(meaning)
         yield from _parameters(meaning)

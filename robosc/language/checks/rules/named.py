@@ -9,6 +9,7 @@ from robosc.base.diagnostics import Severity
 from robosc.language.checks.definitions import circles, communication_of, of_kind, statements
 from robosc.language.checks.edits import Choice, Insertion, Removal, Replacement, part_of
 from robosc.language.checks.expression_types import CONSTANT, ExpressionCheck, Place
+from robosc.language.checks.fleets import indices
 from robosc.language.checks.libraries import Meaning, instances, meanings
 from robosc.language.checks.rule import Finding, on_line, rule
 from robosc.language.checks.type_repairs import repair
@@ -19,7 +20,7 @@ from robosc.model.semantics.cone_of_influence import accesses, conditions
 from robosc.model.semantics.durations import bounds, set_on_robot
 from robosc.model.semantics.expansion import LARGEST, Expansion, constant_value, is_unreadable
 from robosc.model.semantics.failures import is_failure, reasons
-from robosc.model.semantics.instances import bound_arguments
+from robosc.model.semantics.instances import bound_arguments, definition_of
 from robosc.model.semantics.naming import enumeration, escape_keyword
 from robosc.model.semantics.operators import operator_of
 from robosc.model.semantics.typing import INTEGER, UNKNOWN, declared_type, type_of
@@ -100,6 +101,7 @@ def arguments(base: rsc.Base) -> Iterator[Finding]:
     yield from _defaults(base)
     for meaning in meanings(base):
         yield from _of_enums(meaning, instances(base))
+        yield from indices(meaning, instances(base))
         yield from _unreadable(meaning)
         if meaning.instance is not None:
             yield from _instance_findings(meaning)
@@ -323,8 +325,9 @@ def _wrong_number(where: ex.Located, name: str, count: int, names: Sequence[str]
 def unused_template(base: rsc.Base) -> Iterator[Finding]:
     """Every template of a robot has an instance."""
     if isinstance(base, rsc.Robot):
-        instantiated = {instance.definition for instance in instances(base)}
-        for component in of_kind(rsc.Component, base.definitions):
+        components = of_kind(rsc.Component, base.definitions)
+        instantiated = {definition_of(component) for component in components if not component.parameters}
+        for component in components:
             if (
                 component.parameters
                 and isinstance(component.type, rsc.LocalComponent)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.language.checks.definitions import behaviours, components, of_kind, statements, states, variables
 from robosc.language.checks.edits import Choice, Removal, Renaming
+from robosc.language.checks.fleets import member_names
 from robosc.language.checks.rule import Finding, on_line, rule
 from robosc.model import robosc as rsc
 from robosc.model.reflection import tree
@@ -69,6 +70,8 @@ def _repeated_names(kind: str, scopes: Scopes, base: rsc.Base) -> Iterator[Findi
     for where, elements in scopes(base):
         for second, first in _repeated(elements):
             yield _declared_again(kind, second, first, where)
+    if scopes is _components:
+        yield from member_names(base)
 
 
 for _identifier, _kind, _scopes in _UNIQUE:

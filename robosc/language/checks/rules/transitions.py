@@ -6,7 +6,7 @@ and `repeated-assignment`.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from robosc.base.diagnostics import Severity
 from robosc.language.checks.automata import one_out, repeated_events, unknown_events
@@ -20,6 +20,7 @@ from robosc.language.checks.definitions import (
     transitions,
 )
 from robosc.language.checks.edits import Choice, Part, Removal, Replacement, part_of
+from robosc.language.checks.fleets import reference_key
 from robosc.language.checks.rule import Finding, on_line, rule
 from robosc.model import robosc as rsc
 from robosc.model.semantics.communication import event_names
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 
     from robosc.language.checks.edits import Hint, Way
 
-_Event: TypeAlias = "tuple[rsc.Component | None, rsc.CommunicationType, str]"
+_Event: TypeAlias = "tuple[Any, ...]"
 
 
 #: Direction of a message with this event, and its sender. The component's view defines `incoming`.
@@ -163,7 +164,7 @@ def _event(transition: rsc.Transition) -> _Event | None:
         return None
     reference, event = transition.communicationType, str(transition.resultType)
     known = event in event_names(reference.communicationType)
-    return (reference.component, reference.communicationType, event) if known else None
+    return (*reference_key(reference), event) if known else None
 
 
 @rule("idle-transition", Severity.WARNING)

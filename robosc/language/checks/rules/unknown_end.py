@@ -47,14 +47,19 @@ def unknown_end(base: rsc.Base) -> Iterator[Finding]:
     if not isinstance(base, rsc.Robot):
         return
     known = instances(base)
-    conditions = list(command_conditions(known))
+    conditions = [(condition, _owners(condition, known)) for condition in command_conditions(known)]
     places = Places(base)
     for instance in known if conditions else ():
         for transition, _ in instance.transitions:
             port = _failing(transition, instance, known)
             if port is None or not isinstance(transition, rsc.ResultTransition):
                 continue
-            others = [condition for condition in conditions if condition.restricted - {port}]
+            # An event of a component changes only conditions that read the component or the call.
+            others = [
+                condition
+                for condition, owners in conditions
+                if condition.restricted - {port} and owners & {instance, port.instance}
+            ]
             for state, left in _reasons_left(transition, instance, port, known).items():
                 misled = {
                     reason: (other, after.state)
@@ -65,6 +70,12 @@ def unknown_end(base: rsc.Base) -> Iterator[Finding]:
                 place = places.new(transition, instance, port.communication) if misled else None
                 if place is not None:
                     yield _finding(place, transition, instance, misled, port)
+
+
+def _owners(condition: CommandCondition, known: Instances) -> set[Instance | None]:
+    """Return the instances whose states, variables or calls a condition reads."""
+    expression = known.expanded(condition.condition, condition.within)
+    return {known.instance_of(access, condition.within) for access in accesses(expression)}
 
 
 def _finding(

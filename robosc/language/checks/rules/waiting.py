@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, TypeGuard
 from robosc.base.diagnostics import Severity
 from robosc.language.checks.commands import Places, command_conditions, commands_of, events_of, kind_of
 from robosc.language.checks.definitions import assigned_variable, communication_of
+from robosc.language.checks.fleets import reference_key
 from robosc.language.checks.libraries import instances
 from robosc.language.checks.rule import Finding, rule
 from robosc.model import robosc as rsc
@@ -319,7 +320,7 @@ def _names(transition: rsc.Transition, reference: rsc.CommunicationReference) ->
     named = transition.communicationType if isinstance(transition, rsc.ResultTransition) else None
     if named is None:
         return False
-    return (named.component, named.communicationType) == (reference.component, reference.communicationType)
+    return reference_key(named) == reference_key(reference)
 
 
 def _hears(transitions: Iterable[rsc.Transition], reference: rsc.CommunicationReference, kind: rsc.ResultType) -> bool:
