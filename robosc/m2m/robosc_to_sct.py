@@ -353,7 +353,7 @@ class _RoboscToSct:
         """Add the plant of an assumption: one location, where its events are possible only if the condition holds."""
         assumption, within, name = statement.element, statement.within, _statement_name(statement)
         plant = self.plant(
-            f"assumption_{name.replace('.', '_') if name else number}",
+            f"assumption_{_identifier(name) if name else number}",
             sct.PlantKind.assumption,
             name,
             assumption.source,

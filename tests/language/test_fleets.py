@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 from click.testing import CliRunner
@@ -19,12 +19,12 @@ from robosc.language.hover import describe
 from robosc.language.reading import read
 from robosc.language.semantic_tokens import classify
 from robosc.language.text import Documents
+from robosc.model import sct
 from robosc.tools.cli import main
 from tests.language.second_edition import errors, requirements, running, supervised
 
 if TYPE_CHECKING:
     from robosc.language.reading import Reading
-    from robosc.model import sct
 
 #: Sentences of section 6, each with the test that holds it, or the folder of models that do.
 SENTENCES = {
@@ -76,8 +76,15 @@ def robot(*parts: str) -> str:
 def images(model: sct.SupervisoryControlModel) -> list[object]:
     """Return what a model permits: its plants with their topics, its requirements, its invariants and properties."""
     plants = [(plant.name, plant.origin, plant.topic) for plant in model.plants]
-    stated = [[part.text for part in parts] for parts in (model.requirements, model.invariants, model.properties)]
-    return [plants, *stated]
+    return [plants, *(part.text for part in stated(model))]
+
+
+def stated(model: sct.SupervisoryControlModel) -> list[Any]:
+    """Return the requirements, assumptions and properties of a model."""
+    assumptions = [plant for plant in model.plants if plant.kind == sct.PlantKind.assumption]
+    return [
+        *model.requirements, *model.invariants, *model.reachabilityRequirements, *model.properties, *assumptions
+    ]  # fmt: skip
 
 
 def test_each_sentence_has_a_test() -> None:
@@ -186,6 +193,8 @@ EACH = [
     "requirement{name} {each}never {T}.inside and {T}.outside",
     "requirement{name} {each}{T}.enter after each response from {T}.done",
     "requirement{name} {each}at most {T2} {T}.enter since response from {T}.done",
+    "requirement{name} {each}reachable {T}.outside from {T}.inside",
+    "assume{name} {each}response from {T}.done needs {T}.inside",
     "property{name} {each}reachable {T}.inside from Gate.free",
     "property{name} {each}always {T}.used < 4",
 ]
@@ -202,8 +211,8 @@ def test_each_equals_the_requirements_written_out(form: str) -> None:
 def test_the_name_holds_the_instance(form: str) -> None:
     text = form.format(name=' N "why":', each="each Station: ", T="Station", T2="2")
     model = supervised(robot(FLEET, text))
-    stated = [*model.requirements, *model.invariants, *model.properties]
-    assert list(dict.fromkeys(part.name for part in stated if part.name)) == ["N[Cell1]", "N[Cell2]", "N[Cell3]"]
+    names = [getattr(part, "origin", None) or part.name for part in stated(model)]
+    assert list(dict.fromkeys(name for name in names if name)) == ["N[Cell1]", "N[Cell2]", "N[Cell3]"]
 
 
 def test_the_name_is_unique() -> None:

@@ -102,7 +102,7 @@ class _DocumentLayout:
         row = [self._document(parts[0])]
         for left, right in pairwise(parts):
             breaks = _is_word(left, after) or _is_word(right, before)
-            tight = _is_word(right, {",", ":", "(", "..", "/"}) or _is_word(left, {"..", "/"})
+            tight = _is_word(right, {",", ":", "(", "[", "]", "..", "/"}) or _is_word(left, {"[", "..", "/"})
             between = Gap.NONE if tight else Gap.BREAK if breaks else gap
             row.append(Indent(self._gap(right, between)))
             # A closing bracket aligns with the line of its opening bracket.
