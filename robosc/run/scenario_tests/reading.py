@@ -29,7 +29,7 @@ _EVERY = re.compile(rf"every\s+{TIME}\s+(?P<step>.+)")
 _STOP = re.compile(rf"stop\s+{EVENT}")
 #: The beginning of a block, and its first line if that is on the same line.
 _BLOCK = re.compile(r"(?:repeat\s+(?P<rounds>\d{1,9})|(?P<before>before\s+each))\s*\{\s*(?P<rest>.*)")
-_WITHIN = re.compile(rf"(?P<expected>.+?)\s+within\s+{TIME}")
+_WITHIN = re.compile(rf"(?P<expected>.*\S)\s+within\s+{TIME}")
 #: The beginning of an attempt at a block or a time.
 _ALMOST_BLOCK = re.compile(r"(?:repeat|before)\b.*\{")
 _ALMOST_WITHIN = re.compile(r".*\swithin(?:\s+\d\S*(?:\s+\w+)?)?")

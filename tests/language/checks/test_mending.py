@@ -155,6 +155,8 @@ TOLD = {
         "write the name of an array there",
         "write its content directly",
         "leave the folder out, or name another type",
+        "write a requirement",
+        "write an array, such as",
     ),
     "a construct must be rewritten": (
         "assign it `on canceled from",
@@ -163,6 +165,8 @@ TOLD = {
         "let `",
         "choose another name, such as `why`",
         "provide other data",
+        "provide arrays as a whole",
+        "provide objects as a whole",
         "read `error` at `on error from",
         "store it in a variable by `on error from",
         "write `on error from",
