@@ -317,6 +317,9 @@ class Linker:
             call.function = matches[0][1]
         elif name.text == NEGATION and len(call.arguments) == 1:
             self._substitute(call, ex.Negation(operand=call.arguments[0], source=call.source))
+        elif name.text in FUNCTIONS and not self._file.may_declare(name.text, NameKind.NAMED):
+            arguments = list(call.arguments)
+            self._substitute(call, ex.FunctionCall(function=name.text, arguments=arguments, source=call.source))
         elif name.text == TEXT_FUNCTION and not self._file.may_declare(name.text, NameKind.NAMED):
             self._text(call, name)
         elif not self._file.may_declare(name.text, NameKind.NAMED):

@@ -6,7 +6,7 @@ import pytest
 
 from tests.language.second_edition import running
 
-FUNCTIONS = "abs min max mod floor ceil round sqrt sin cos atan2 size"
+FUNCTIONS = "abs min max mod floor ceil round sqrt sin cos atan2 hypot size"
 WORDS = f"""{FUNCTIONS} all any count in after without ms s each at most since automaton never always reachable property
     constant parameter condition function is then else send change canceled running Failure unavailable rejected timeout
     lost aborted failed unreadable because refuse not msg srv
@@ -57,3 +57,15 @@ def test_a_new_word_is_the_value_of_an_enum(word: str) -> None:
     engine = running(text)
     engine.perform("message_told.u_response", {"i_response": word})
     assert engine.enabled("message_go.c_trigger")
+
+
+def test_an_own_function_hypot_is_called() -> None:
+    text = """robot R {
+      function hypot(x: integer, y: integer): boolean = x = y
+      component C {
+        incoming message go with type: none
+        behaviour { variable n: integer(0..3) = 2 initial marked state here { on request to go } }
+      }
+      requirement go needs hypot(C.n, 2)
+    }"""
+    assert running(text).enabled("message_go.c_trigger")

@@ -44,9 +44,14 @@ class Runner:
         layer: bool = False,
         configuration: str | Path | None = None,
         remappings: Sequence[str] = (),
+        own_types: bool = False,
     ) -> list[str]:
-        """Return the command that runs a model with parameters (`name:=value`) and remappings (`/from:=/to`)."""
+        """Return the command that runs a model with parameters (`name:=value`) and remappings (`/from:=/to`).
+
+        With `own_types`, the types of `interfaces/ros2` replace those that `robosc` knows.
+        """
         options = ["--layer"] if layer else []
+        options += ["--interface-path", str(HERE / "interfaces" / "ros2")] if own_types else []
         options += ["--config", str(configuration)] if configuration else []
         arguments = ["--ros-args", *(word for parameter in parameters for word in ("-p", parameter))]
         arguments += [word for remapping in remappings for word in ("-r", remapping)]

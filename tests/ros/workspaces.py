@@ -53,6 +53,8 @@ class Package:
     with_tests: bool = False
     #: Whether the node publishes its state as a typed message, from a package built beside it.
     typed: bool = False
+    #: Whether the model uses other types than those of its packages that `robosc` knows: those of `interfaces`.
+    own_types: bool = False
     #: A fault to inject: a file of the package, a text in it, and its replacement.
     fault: tuple[str, str, str] | None = None
 
@@ -80,7 +82,7 @@ def _packages(target: str) -> list[Package]:
         Package(
             "porter_controller", CPP / "porter.rscd", target, CPP / "porter-config.json", with_tests=True, typed=True
         ),
-        Package("scout_controller", HERE / "faults" / "scout.rscd", target),
+        Package("scout_controller", HERE / "faults" / "scout.rscd", target, own_types=True),
         Package("carrier_controller", HERE / "ends" / "carrier.rscd", target),
         Package("cruise_controller", HERE.parent / "run" / "runtime" / "cruise.rscd", target),
         Package("patience_controller", HERE / "times" / "patience.rscd", target),
@@ -239,6 +241,7 @@ def _transform(package: Package, out: Path) -> list[str]:
     settings = ["--config", str(package.configuration)] if package.configuration else []
     settings += ["--with-tests"] if package.with_tests else []
     settings += ["--typed-state"] if package.typed else []
+    settings += ["--interface-path", str(HERE / "interfaces" / package.target[:4])] if package.own_types else []
     return ["transform", str(package.model), "-o", str(out), "--to", package.target, *settings]
 
 

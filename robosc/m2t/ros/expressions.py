@@ -41,6 +41,7 @@ _FUNCTIONS = {
     "sin": "std::sin",
     "cos": "std::cos",
     "atan2": "std::atan2",
+    "hypot": "std::hypot",
     "size": "size_of",
 }
 _OF_ARRAYS = {"min": "least", "max": "greatest"}

@@ -307,6 +307,8 @@ FUNCTIONS = {
         _function("sin", TypeRule.DOUBLE, _finite(math.sin)),
         _function("cos", TypeRule.DOUBLE, _finite(math.cos)),
         _function("atan2", TypeRule.DOUBLE, lambda y, x: math.atan2(as_double(y), as_double(x)), 2),
+        # A call of `hypot` is that of an own function of this name, if there is one.
+        _function("hypot", TypeRule.DOUBLE, lambda x, y: math.hypot(as_double(x), as_double(y)), 2),
         _function("double", TypeRule.DOUBLE, as_double),
         _function("size", TypeRule.SIZE, len),
     )

@@ -115,6 +115,13 @@ def test_where_ieee_754_has_nan() -> None:
     assert call("atan2", 0.0, -1.0) == math.pi
 
 
+def test_the_length_of_a_vector() -> None:
+    """`hypot` does not overflow between, and is infinite beside an infinite side."""
+    assert call("hypot", 3, -4.0) == 5.0
+    assert call("hypot", 1e200, 0.0) == 1e200
+    assert call("hypot", math.inf, math.nan) == math.inf
+
+
 def call(function: str, *values: float) -> object:
     return evaluate(ex.FunctionCall(function=function, arguments=[literal(value) for value in values]), lambda _: 0)
 

@@ -48,7 +48,7 @@ class Running:
 
     def command(self, *parameters: str) -> list[str | Path]:
         """Return the command that starts the node as one process, with parameters (`name:=value`)."""
-        return [*self.place.command(MODEL, *parameters)]
+        return [*self.place.command(MODEL, *parameters, own_types=True)]
 
 
 Controller = Compiled | Running
