@@ -97,8 +97,8 @@ def test_what_a_model_says_is_text(chromium: Any, model: Path) -> None:
             shown = page.locator(f'#commands > li[data-event="{command}"]')
             shown.get_by_role("button", name="What would help?").click()
             shown.locator(".why ul").first.wait_for()
-        page.get_by_label("Find").fill(EVIL)
-        page.get_by_label("Find").fill("")
+        page.get_by_label("Find", exact=True).fill(EVIL)
+        page.get_by_label("Find", exact=True).fill("")
         assert_harmless(page)
 
 

@@ -394,9 +394,9 @@ def test_it_draws_30_times_a_second_at_most_and_what_is_chosen_in_the_next_frame
 
 def test_finding_folding_and_zooming(chromium: Any) -> None:
     with served(MODEL) as address, opened(chromium, address) as page:
-        page.get_by_label("Find").fill("blocked")
+        page.get_by_label("Find", exact=True).fill("blocked")
         assert page.locator(".card:visible .name").all_text_contents() == ["Lidar"]
-        page.get_by_label("Find").fill("")
+        page.get_by_label("Find", exact=True).fill("")
         page.get_by_role("button", name="Fold all").click()
         assert page.locator(".card[open]").count() == 0
         page.get_by_role("button", name="Unfold all").click()
