@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.language.grammar import Failure, parse, pattern
 from robosc.language.interface_types import is_made, ros_properties
-from robosc.language.linking import Linker, first_instance
+from robosc.language.name_findings import first_instance
 from robosc.language.outline import Outline
 from robosc.language.scopes import by_name
+from robosc.language.surroundings import Surroundings
 from robosc.language.tokens import Kind, Tokens, too_complex
 from robosc.model import robosc as rsc
 from robosc.model.reflection import literals
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
     from robosc.base.ros_types import RosTypes
     from robosc.language.outline import Block
     from robosc.language.reading import Reading
-    from robosc.language.scopes import File
 
 #: Declarations that can have the type `Failure`.
 _KEEPS = (rsc.Variable, rsc.Constant, rsc.FormalParameter, rsc.Function)
@@ -221,40 +221,40 @@ def _named(
     file = reading.file
     if file.base is None:
         return
-    linker = Linker(file, ros_types)
-    linker.open_scope()
+    surroundings = Surroundings(file)
+    surroundings.open_scope()
     for element, names in list(file.references.items()):
         for feature, name in names.items():
             if _NAME in name.text and name.start <= start < name.end:
                 if isinstance(element, rsc.ImportedComponent) and feature == "library":
                     yield from map(Proposal, libraries())
-                for key, candidate in _candidates(linker, file, element, feature, names):
+                for key, candidate in _candidates(surroundings, element, feature, names, ros_types):
                     yield Proposal(".".join(map(escape_keyword, key.split("."))), candidate)
 
 
 def _candidates(
-    linker: Linker, file: File, element: Any, feature: str, names: Mapping[str, Any]
+    surroundings: Surroundings, element: Any, feature: str, names: Mapping[str, Any], ros_types: RosTypes
 ) -> Iterator[tuple[str, Any]]:
     match element:
         case rsc.CommunicationReference():
-            yield from _communications(linker, element, feature, names)
+            yield from _communications(surroundings, element, feature, names)
         case rsc.Access():
-            yield from _accessible(linker, element, feature, names)
+            yield from _accessible(surroundings, element, feature, names)
         case rsc.PropertySegment():
             access = element.eContainer()
             before = access_types(access, value_type(access))[list(access.segments).index(element)]
-            yield from _properties(linker, before)
+            yield from _properties(before, ros_types)
         case rsc.ObjectPropertyValue():
-            yield from _properties(linker, object_value_type(element.eContainer()))
+            yield from _properties(object_value_type(element.eContainer()), ros_types)
         case rsc.Transition():
-            own = linker.around(element, rsc.Component)
-            yield from (linker.scope.states(own) if own is not None else {}).items()
+            own = surroundings.around(element, rsc.Component)
+            yield from (surroundings.scope.states(own) if own is not None else {}).items()
         case rsc.RequirementTransition():
             yield from by_name(element.eContainer().eContainer().states).items()
         case rsc.Argument():
             yield from _parameters(element).items()
         case _:
-            yield from _definitions(linker, file, element, feature)
+            yield from _definitions(surroundings, element, feature)
 
 
 def _parameters(argument: rsc.Argument) -> dict[str, Any]:
@@ -264,17 +264,17 @@ def _parameters(argument: rsc.Argument) -> dict[str, Any]:
     return {} if made_of is None else by_name(made_of.parameters)
 
 
-def _definitions(linker: Linker, file: File, element: Any, feature: str) -> Iterator[tuple[str, Any]]:
-    components = file.declared[rsc.Component]
+def _definitions(surroundings: Surroundings, element: Any, feature: str) -> Iterator[tuple[str, Any]]:
+    components = surroundings.file.declared[rsc.Component]
     match element:
         case rsc.ComplexDataTypeReference():
-            yield from _usable(linker, rsc.ComplexDataType)
+            yield from _usable(surroundings, rsc.ComplexDataType)
             if isinstance(element.eContainer(), _KEEPS):
                 yield FAILURE, None
         case rsc.CommunicationType():
-            yield from _usable(linker, rsc.Interface)
+            yield from _usable(surroundings, rsc.Interface)
         case rsc.Call():
-            yield from _usable(linker, rsc.Function)
+            yield from _usable(surroundings, rsc.Function)
         case rsc.ImportedComponent() if feature == "definition":
             yield from by_name(_components_of(element.library)).items()
         case rsc.InstantiatedComponent():
@@ -282,8 +282,8 @@ def _definitions(linker: Linker, file: File, element: Any, feature: str) -> Iter
         case rsc.InstanceQuantifier() | rsc.StatedDefinition():
             yield from ((name, component) for name, component in components.items() if component.parameters)
         case rsc.TopicRemapping():
-            own = linker.around(element, rsc.Component)
-            yield from ((linker.scope.communications(own) if own is not None else None) or {}).items()
+            own = surroundings.around(element, rsc.Component)
+            yield from ((surroundings.scope.communications(own) if own is not None else None) or {}).items()
 
 
 def _components_of(library: Any) -> list[Any]:
@@ -294,24 +294,24 @@ def _components_of(library: Any) -> list[Any]:
     )
 
 
-def _usable(linker: Linker, kind: type[Any]) -> Iterator[tuple[str, Any]]:
-    for name in dict.fromkeys(linker.scope.usable(kind)):
-        yield name, linker.scope.find(kind, name)[0][1]
+def _usable(surroundings: Surroundings, kind: type[Any]) -> Iterator[tuple[str, Any]]:
+    for name in dict.fromkeys(surroundings.scope.usable(kind)):
+        yield name, surroundings.scope.find(kind, name)[0][1]
 
 
 def _communications(
-    linker: Linker, reference: rsc.CommunicationReference, feature: str, names: Mapping[str, Any]
+    surroundings: Surroundings, reference: rsc.CommunicationReference, feature: str, names: Mapping[str, Any]
 ) -> Iterator[tuple[str, Any]]:
     if feature == "communicationType" and "component" in names:
         component = reference.component
-        communications = (linker.scope.communications(component) if component is not None else None) or {}
+        communications = (surroundings.scope.communications(component) if component is not None else None) or {}
         yield from ((name, other) for name, other in communications.items() if _fits(reference, other))
         return
-    own = linker.around(reference, rsc.Component)
-    inner = (linker.scope.communications(own) if own is not None else None) or {}
+    own = surroundings.around(reference, rsc.Component)
+    inner = (surroundings.scope.communications(own) if own is not None else None) or {}
     known: dict[str, list[tuple[Any, Any]]] = {name: [(own, other)] for name, other in inner.items()}
-    for name in linker.scope.all_communications():
-        known.setdefault(name, list(linker.scope.communicating(name)))
+    for name in surroundings.scope.all_communications():
+        known.setdefault(name, list(surroundings.scope.communicating(name)))
     for name, ports in known.items():
         for component, other in ports:
             if _fits(reference, other):
@@ -337,33 +337,38 @@ def _fits(reference: rsc.CommunicationReference, communication: Any) -> bool:
 
 
 def _accessible(
-    linker: Linker, access: rsc.Access, feature: str, names: Mapping[str, Any]
+    surroundings: Surroundings, access: rsc.Access, feature: str, names: Mapping[str, Any]
 ) -> Iterator[tuple[str, Any]]:
     first = names.get("component")
     if feature == "item" and first is not None:
-        known = {**linker.components(access), **linker.templates(access)}
+        known = {**surroundings.components(access), **surroundings.templates(access)}
         if first.text in known:
-            yield from (linker.scope.members(known[first.text]) or {}).items()
-            yield from _running(linker, known[first.text])
+            yield from (surroundings.scope.members(known[first.text]) or {}).items()
+            yield from _running(surroundings, known[first.text])
         elif access.enumeration is not None:
             yield from by_name(rule.value for rule in access.enumeration.rules if rule.value).items()
-        elif first.text in (automata := linker.automata(access)):
+        elif first.text in (automata := surroundings.automata(access)):
             yield from by_name(automata[first.text].states).items()
         return
     accessible: dict[str, Any] = {}
-    if linker.expects_failure(access):
+    if surroundings.expects_failure(access):
         accessible |= dict.fromkeys(_reasons(access))
-    accessible |= {**linker.elements(access), **linker.parameters(access)}
+    accessible |= {**surroundings.elements(access), **surroundings.parameters(access)}
     user = access.eContainer()
     if isinstance(user, rsc.Argument):
         accessible |= _parameters(user)
-    elif linker.around(access, rsc.EnumDataType) is None:
-        own = linker.around(access, rsc.Component)
-        members = (linker.scope.members(own) if own is not None else None) or {}
-        accessible |= {**linker.templates(access), **members, **linker.components(access), **linker.automata(access)}
-        accessible |= dict(_running(linker, own)) if own is not None else {}
+    elif surroundings.around(access, rsc.EnumDataType) is None:
+        own = surroundings.around(access, rsc.Component)
+        members = (surroundings.scope.members(own) if own is not None else None) or {}
+        accessible |= {
+            **surroundings.templates(access),
+            **members,
+            **surroundings.components(access),
+            **surroundings.automata(access),
+        }
+        accessible |= dict(_running(surroundings, own)) if own is not None else {}
     for kind in (rsc.NamedExpression, rsc.EnumValue, rsc.Function):
-        for name, element in _usable(linker, kind):
+        for name, element in _usable(surroundings, kind):
             accessible.setdefault(name, element)
     yield from accessible.items()
 
@@ -378,17 +383,17 @@ def _reasons(access: rsc.Access) -> Sequence[str]:
     return reasons(reference.communicationType if reference else None) or sorted(FAILURES)
 
 
-def _running(linker: Linker, component: rsc.Component) -> Iterator[tuple[str, Any]]:
+def _running(surroundings: Surroundings, component: rsc.Component) -> Iterator[tuple[str, Any]]:
     """Yield the names that read whether a service or action of a component is running."""
-    for name, communication in (linker.scope.communications(component) or {}).items():
+    for name, communication in (surroundings.scope.communications(component) or {}).items():
         if isinstance(communication, rsc.Service | rsc.Action):
             yield f"{name}.{RUNNING_WORD}", communication
 
 
-def _properties(linker: Linker, of: Any) -> Iterator[tuple[str, Any]]:
+def _properties(of: Any, ros_types: RosTypes) -> Iterator[tuple[str, Any]]:
     if isinstance(of, ObjectType):
         if is_made(of.definition):
-            yield from ((name, None) for name in ros_properties(of.definition, linker.interfaces))
+            yield from ((name, None) for name in ros_properties(of.definition, ros_types))
         else:
             yield from by_name(of.definition.properties).items()
 

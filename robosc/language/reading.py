@@ -12,7 +12,8 @@ from robosc.base.files.resources import locate
 from robosc.base.ros_types import RosTypes
 from robosc.language.failures import names_failures
 from robosc.language.libraries import LibraryPath
-from robosc.language.linking import RULE, link
+from robosc.language.linking import link
+from robosc.language.name_findings import RULE
 from robosc.language.recovery import parse_file
 from robosc.language.syntax_messages import did_you_mean
 from robosc.language.text import Documents, decode
