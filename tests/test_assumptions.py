@@ -324,11 +324,83 @@ def written(folder: Path, text: str = SHOP) -> Path:
     return path
 
 
+def path_without(folder: Path) -> str:
+    """Return the path of a robot without assumptions."""
+    path = folder / "without.rscd"
+    path.write_text("robot R { component C { incoming message go with type: none } }")
+    return str(path)
+
+
+def test_without_one_events_and_guards_change(tmp_path: Path) -> None:
+    path = written(
+        tmp_path,
+        """robot Fleet {
+          component Station(ns: string) {
+            incoming message go with identifier: ns + "/go", type: none
+            outgoing message done with identifier: ns + "/done", type: none
+            behaviour {
+              initial marked state idle { on request to go goto busy on response from done goto confused }
+              state busy { on response from done goto idle }
+              state confused { on request to go goto busy }
+            }
+          }
+          component Cell[1..2] is Station("/c" + text(number))
+          assume A1: each Station: Station.done needs Station.busy
+          requirement Cell[1].go needs !Cell[2].confused
+        }""",
+    )
+    assert changed_guards(path, "A1[Cell2]") == [("message_Cell1_go.c_trigger", ["true", "!component_Cell2.confused"])]
+    path = written(
+        tmp_path,
+        """robot P {
+          component S {
+            outgoing message done with type: none
+            incoming message go with type: none
+            behaviour {
+              initial marked state a { on response from done goto b }
+              marked state b { on request to go goto a }
+            }
+          }
+          assume A1: done needs S.b
+        }""",
+    )
+    assert changed_guards(path, "A1") == [
+        ("message_done.u_response", ["never enabled", "true"]),
+        ("message_go.c_trigger", ["never enabled", "true"]),
+    ]
+
+
+@pytest.mark.parametrize("name", ["A1[Cell2]", "A1[Cell[2]]"])
+def test_a_scenario_names_the_assumption_of_an_instance(tmp_path: Path, name: str) -> None:
+    path = written(
+        tmp_path,
+        """robot Fleet {
+          component Station(ns: string) {
+            outgoing message done with identifier: ns + "/done", type: boolean
+            behaviour { variable armed: boolean initial marked state idle { on response from done do armed := value } }
+          }
+          component Cell[1..2] is Station("/c" + text(number))
+          assume A1: each Station: Station.done needs Station.armed
+        }""",
+    )
+    scenarios = tmp_path / "fleet.scenarios"
+    scenarios.write_text(f'scenario "early"\n  Cell2.done with true\n  expect {name} violated\n')
+    assert command("test", str(path), str(scenarios)).exit_code == 0
+    scenarios.write_text(f'scenario "early"\n  Cell1.done with true\n  expect {name} violated\n')
+    assert "the last step does not violate `A1[Cell2]`" in command("test", str(path), str(scenarios)).output
+
+
+def changed_guards(path: Path, name: str) -> list[tuple[str, list[str]]]:
+    answer = json.loads(command("synthesize", str(path), "--without", name, "--json").stdout)
+    return [(row["name"], row["guards"]) for row in answer["guards"]]
+
+
 def test_without_one(tmp_path: Path) -> None:
     path = str(written(tmp_path))
     shown = command("synthesize", path, "--without", "A2")
     assert shown.exit_code == 0
     assert re.search(r"Shop: \d+ states before, \d+ states after", shown.stdout)
+    assert "no assumption with a name" in command("synthesize", path_without(tmp_path), "--without", "A1").stderr
     told = json.loads(command("synthesize", path, "--without", "A2", "--json").stdout)
     assert (told["without"], told["empty"]) == ("A2", False)
     assert [each["states"] for each in told["requirements"]] != []

@@ -322,6 +322,15 @@ def test_files_take_both_names(tmp_path: Path) -> None:
     assert settings.on_shutdown == ["Cell2.enter", "Cell3.enter"]
 
 
+def test_a_condition_of_a_scenario_keeps_its_columns(tmp_path: Path) -> None:
+    """In the robot's text, `Cell1` is longer by two characters."""
+    (tmp_path / "robot.rscd").write_text(robot(FLEET))
+    line = "  expect Cell1.inside or Cell2.outside and Cell1.nonsense"
+    (tmp_path / "wrong.scenarios").write_text(f'scenario "one"\n{line}\n')
+    found = CliRunner().invoke(main, ["test", str(tmp_path / "robot.rscd"), str(tmp_path / "wrong.scenarios")])
+    assert f"wrong.scenarios:2:{line.index('nonsense') + 1}: error: component `Cell` has no" in found.output
+
+
 def test_cell_with_its_number_is_no_name_in_a_model() -> None:
     text = robot(FLEET, "requirement Cell1.enter needs Gate.free")
     with pytest.raises(robosc.ModelError) as raised:

@@ -63,7 +63,6 @@ class _Comparison:
     def __init__(self, model: sct.SupervisoryControlModel, specification: sct.SupervisoryControlModel) -> None:
         """Pair the elements; raise _DifferenceError if more than the supervisors differ."""
         self._model = model
-        self._specification = specification
         self._theirs: dict[Any, Any] = {}
         names = {plant.name for plant in model.plants}
         supervisors = [plant for plant in specification.plants if plant.name not in names]

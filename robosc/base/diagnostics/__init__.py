@@ -115,7 +115,7 @@ def in_order(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
     return sorted(
         dict.fromkeys(findings),
         key=lambda finding: (
-            *_original_place(finding),
+            *original_place(finding),
             finding.follows,
             finding.file,
             finding.span,
@@ -128,7 +128,7 @@ def in_order(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
     )
 
 
-def _original_place(finding: Diagnostic) -> tuple[str, Span]:
+def original_place(finding: Diagnostic) -> tuple[str, Span]:
     """Return the place of a finding, or that of the original one if it is a consequence."""
     original = finding.related[0] if finding.follows and finding.related else finding
     return original.file, original.span

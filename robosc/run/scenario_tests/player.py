@@ -228,25 +228,27 @@ class Player(Drive):
             case Refusal():
                 self._refuse(find_event(self._graph.model, line.event))
             case Wait():
-                for _ in self._passing(line.seconds):
+                for _ in self._passing(line.seconds, math.prod(one.of for one in self._rounds)):
                     pass
             case Every():
                 self._come_in(line.step)
                 self._repetitions[find_event(self._graph.model, line.step.event)] = _Repetition(line)
             case Stop():
                 self._repetitions.pop(find_event(self._graph.model, line.event), None)
+            case _:
+                raise TypeError(f"{type(line).__name__} is no step")
 
-    def _passing(self, seconds: float) -> Iterator[None]:
-        """Let time pass in whole periods, and yield after each.
+    def _passing(self, seconds: float, rounds: int = 1) -> Iterator[None]:
+        """Let time pass in whole periods, and yield after each. The time passes in so many `rounds`.
 
         A timer that is up when the time is over expires: it is late by the resolution of the clock, once for each timer
         before it.
         """
         periods = math.ceil(round(seconds / self._period, 6))
-        ticks = periods * math.prod(one.of for one in self._rounds)
-        if ticks > _MOST_PERIODS:
+        if periods * rounds > _MOST_PERIODS:
             hint = "write a shorter time, or play with a longer `controlLoop.periodMs`"
-            raise NamingError(f"this time has {ticks:,} ticks of the control loop, at most a million", hint)
+            ticks = f"{periods * rounds:,} ticks of the control loop{' in all rounds' if rounds > 1 else ''}"
+            raise NamingError(f"this time has {ticks}, at most a million", hint)
         over, expiries = self._now + seconds, self._expiries - 1
         for _ in range(periods):
             self._pass_period()
@@ -271,6 +273,10 @@ class Player(Drive):
             if event.kind == sct.EventKind.canceled and self._clients[event] in self._robot.goals:
                 hint = f"write `error from {self._called(event)} because canceled`"
                 raise NamingError("the controller has not canceled this goal", hint)
+            if event.kind == sct.EventKind.feedback:
+                hint = f"write `stop feedback from {self._called(event)}` before the goal ends"
+                hint = hint if event in self._repetitions else ""
+                raise NamingError(f"the {words(event)} cannot come now: no goal runs", hint)
             raise NamingError(f"the {words(event)} cannot come now: it ends no running call or goal", "")
         if event.kind == sct.EventKind.error:
             self._fail(event, line)
@@ -492,7 +498,7 @@ class Player(Drive):
                 return None if violated else line.fault(f"the last step does not violate `{assumption}`", self._state())
             case SentCommand():
                 return self._sent(line, find_event(self._graph.model, line.event))
-        return None
+        raise TypeError(f"{type(line).__name__} is no expectation")
 
     def _verdict(self, line: Permission, event: sct.Event) -> Diagnostic | None:
         engine = self._controller.engine
@@ -528,15 +534,17 @@ class Player(Drive):
         # The log does not show objects that are forwarded unchanged.
         messages = self._controller.messages
         sent = [sent_data(entry, messages.get(number)) for number, entry in entries]
-        whole = [self._whole(event, messages.get(number)) for number, _ in entries]
-        count = sum(any(agrees(line.data, data) for data in both) for both in zip(sent, whole, strict=True))
+        count = sum(
+            agrees(line.data, data) or agrees(line.data, self._whole(event, messages.get(number)))
+            for data, (number, _) in zip(sent, entries, strict=True)
+        )
         if count:
             return _counted(line, f"{phrase} with this data", count)
         unknown = first_unknown(line.data, sent[-1], self._handed_on(event))
         if unknown:
             message = f"`{unknown}` of the {phrase} cannot be compared: the node forwards it unchanged"
             return line.fault(message, "leave it out: times and fields of unknown definitions are not compared")
-        shown = with_expected_defaults(sent[-1], whole[-1], line.data)
+        shown = with_expected_defaults(sent[-1], self._whole(event, messages.get(entries[-1][0])), line.data)
         return line.fault(f"the {phrase} was sent with other data", f"the sent data is {json_text(shown)}")
 
     def _whole(self, event: sct.Event, message: Any) -> Any:

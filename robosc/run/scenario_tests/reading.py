@@ -9,6 +9,7 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
 from robosc.base.diagnostics import Diagnostic, Severity, Span
+from robosc.model.semantics.naming import output_name
 from robosc.model.semantics.steps import (
     EVENT,
     TIME,
@@ -43,8 +44,10 @@ _DEEPEST = 10
 _EXPECTED = re.compile(
     EVENT + r"\s+(?:(?P<verdict>allowed)|(?P<forbidden>forbidden)(?:\s+by\s+(?P<by>.+))?"
     r"|(?P<not_sent>not\s+sent)"
-    r"|(?P<sent>sent)(?:\s+(?P<count>\d{1,9})\s+times?)?(?:\s+with\s+(?P<data>.+))?|(?P<violated>violated))"
+    r"|(?P<sent>sent)(?:\s+(?P<count>\d{1,9})\s+times?)?(?:\s+with\s+(?P<data>.+))?)"
 )
+#: The name of an assumption, as in a model or as in output: `A1[Cell[2]]`, `A1[Cell2]`.
+_VIOLATED = re.compile(r"(?P<assumption>\^?[A-Za-z_][\w.^]*(?:\[[\w.^\[\]]+\])?)\s+violated")
 #: Other words that a line may begin with, and how to write such a line.
 _FORMS = {
     "scenario": 'write `scenario "stops for an obstacle"`',
@@ -317,7 +320,8 @@ class _Reader:
         steps = self._steps(line)
         rounds_in_all = rounds * (self._blocks[-1][2] if self._blocks else 1)
         if not 1 <= rounds_in_all <= _MOST_ROUNDS:
-            self._fault(line, "a block is played 1 to 1,000,000 times, including those around it", _FORMS["repeat"])
+            message = "a block is played 1 to 1,000,000 times, including those around it"
+            self._fault(line, message, "write another number")
             rounds = rounds_in_all = 1
         if len(self._blocks) >= _DEEPEST:
             self._fault(line, f"more than {_DEEPEST} blocks are within each other", "write fewer blocks")
@@ -383,7 +387,8 @@ class _Reader:
         timed = _WITHIN.fullmatch(text)
         within = _seconds(timed)
         if (timed is not None and within is None) or (timed is None and _ALMOST_WITHIN.fullmatch(_TEXT.sub("", text))):
-            self._fault(line, "`within` needs a time of at most a day", "write `expect move sent within 2 s`")
+            message = "`within` needs a time in `ms`, `s` or `min`, of at most a day"
+            self._fault(line, message, "write `expect move sent within 2 s`")
             return
         end = line.span.end_column
         if timed is not None:
@@ -392,7 +397,11 @@ class _Reader:
         span = Span(line.span.line, end - len(text), line.span.line, end)
         expected = Line(line.file, span)
         match = _EXPECTED.fullmatch(text)
-        if match is None:
+        violated = _VIOLATED.fullmatch(text)
+        if violated is not None:
+            assumption = output_name(violated["assumption"].replace("^", ""))
+            yield Violation(line.file, line.span, assumption, within=within)
+        elif match is None:
             if _ALMOST_EXPECTED.fullmatch(text):
                 hint = "write `move sent 3 times with {…} within 2 s`, `move not sent` or `move forbidden by SR1`"
                 self._fault(expected, "this is no expectation about an event", hint)
@@ -403,9 +412,6 @@ class _Reader:
                 self._fault(
                     expected, "this is not a single condition", "close each bracket, and write a comment after `//`"
                 )
-        elif match["violated"]:
-            assumption = text.rsplit(maxsplit=1)[0].replace("^", "")
-            yield Violation(line.file, line.span, assumption, within=within)
         elif match["sent"] or match["not_sent"]:
             yield from self._sent(match, line, within, expected)
         else:

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import robosc
 from robosc.analysis.supervise import supervise
 from robosc.analysis.system import format_count, format_number
-from robosc.base.diagnostics import ModelError, has_errors
+from robosc.base.diagnostics import ModelError, has_errors, original_place
 from robosc.model import sct
 from robosc.model.places import place
 from robosc.model.semantics.printing import RobotPrinter, conjunction
@@ -88,9 +88,7 @@ def _absent(findings: Sequence[Diagnostic]) -> Iterator[tuple[Diagnostic, str]]:
         if finding.rule not in ("never-enabled", "unreachable-state") or finding.follows:
             continue
         original = finding.file, finding.span
-        following = sum(
-            (other.related[0].file, other.related[0].span) == original for other in findings if other.follows
-        )
+        following = sum(original_place(other) == original for other in findings if other.follows)
         title = finding.message.partition(": ")[0]
         yield finding, f"{title}; therefore, {format_count(following, 'more finding')}" if following else title
 

@@ -166,7 +166,7 @@ def test_a_repetition_belongs_to_its_scenario() -> None:
 def test_a_repetition_that_cannot_be_played_is_reported_at_its_line() -> None:
     text = 'scenario "one"\n  every 1 s feedback from drive\n  response from drive\n  wait 5 s\n  expect Base.parked\n'
     [(line, _, message, _)] = findings(text)
-    assert (line, message) == (2, "the feedback from `Base.drive` cannot come now: it ends no running call or goal")
+    assert (line, message) == (2, "the feedback from `Base.drive` cannot come now: no goal runs")
 
 
 def test_a_failed_expectation_in_a_block_is_reported_once_with_its_round() -> None:
@@ -288,7 +288,7 @@ def test_deep_blocks_are_refused() -> None:
 def test_a_block_with_too_many_ticks_is_refused_at_once() -> None:
     text = 'scenario "one"\n  repeat 1000 {\n    wait 1 h\n  }\n  expect Door.unknown\n'.replace("1 h", "60 min")
     [(line, _, message, _)] = findings(text)
-    assert (line, message) == (3, "this time has 36,000,000 ticks of the control loop, at most a million")
+    assert (line, message) == (3, "this time has 36,000,000 ticks of the control loop in all rounds, at most a million")
 
 
 NAMES = """\
