@@ -101,11 +101,11 @@ def test_a_type_that_the_text_does_not_use_has_no_constants() -> None:
 
 def test_a_constant_of_two_types_is_ambiguous(package: Path) -> None:
     content = robot(type_="cart_msgs/BatteryState")
+    types = "`cart_msgs/msg/BatteryState`", "`sensor_msgs/msg/BatteryState`"
     assert faults(content, RosTypes([package])) == [
         (
             "unresolved-reference",
-            "`POWER_SUPPLY_STATUS_FULL` is a constant of `cart_msgs/msg/BatteryState` or "
-            "`sensor_msgs/msg/BatteryState`",
+            f"`POWER_SUPPLY_STATUS_FULL` is a constant of {' or '.join(types)}",
         )
     ]
     assert faults(robot("BatteryState.OWN", type_="cart_msgs/BatteryState"), RosTypes([package])) == []

@@ -171,12 +171,10 @@ def test_the_editor_formats_other_spellings() -> None:
     assert "".join([*pieces, content[behind:]]) == formatted(content)
 
 
-@pytest.mark.parametrize("place", ["object O {{ {}: string }}", "object O {{ a: string {}: string }}"])
+@pytest.mark.parametrize("place", ["object O { NAME: string }", "object O { a: string NAME: string }"])
 @pytest.mark.parametrize("word", ["not", "msg"])
 def test_a_property_is_no_name_in_an_expression(place: str, word: str) -> None:
-    content = gate(
-        "not Gate.near", "datatype " + place.format(word).replace("{{", "{").replace("}}", "}"), "std_msgs/msg/Bool"
-    )
+    content = gate("not Gate.near", f"datatype {place.replace('NAME', word)}", "std_msgs/msg/Bool")
     assert messages(content) == []
     assert "!Gate.near" in formatted(content)
     assert "std_msgs/Bool" in formatted(content)
