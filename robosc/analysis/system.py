@@ -19,6 +19,7 @@ from robosc.analysis.wording import condition
 from robosc.model import sct
 from robosc.model.semantics.definition import named_state
 from robosc.model.semantics.roles import Roles, plant_of
+from robosc.synthesis.bdd import and_exists
 from robosc.synthesis.decoding import value
 from robosc.synthesis.fixpoint import coreachable, reachable, supervise
 from robosc.synthesis.relation import event_relations, goals, plant_moves, required_moves, steps, violations
@@ -172,7 +173,8 @@ class SynthesizedSystem(SupervisedSystem):
         super().__init__(
             model, encoding, {relation.event: relation for relation in relations}, required_moves(relations)
         )
-        self.required = {relation.event: relation.requirement for relation in relations}
+        #: For each event, the states, and the inputs of a command, in which its requirements hold.
+        self.required = {relation.event: relation.permitted for relation in relations}
         self.solution = solution or supervise(encoding, self.moves, self.violating, self.goals.values())
         self.controlled = self.solution.controlled
 
@@ -233,7 +235,7 @@ class SynthesizedSystem(SupervisedSystem):
 
     def allowed(self, event: sct.Event) -> Diagram:
         """Return the controlled states in which the event can happen."""
-        enabled = self.controlled & self.relations[event].enabled & self.required[event]
+        enabled = self.controlled & self.relations[event].allowed_by(self.required[event])
         step = next((step for relation, step in self.moves if relation.event is event), None)
         return enabled & step.preimage(self.controlled) if event.controllable and step is not None else enabled
 
@@ -273,17 +275,25 @@ class SynthesizedSystem(SupervisedSystem):
 
         Orders and counts are ignored: they restrict only another start.
         """
-        permissions = self.relations[trigger].permissions.items()
-        return self.diagrams.all_of(
-            holds for requirement, holds in permissions if requirement.automaton is None and requirement not in left_out
-        )
+        relation = self.relations[trigger]
+        automata = {requirement for requirement in relation.requirements if requirement.automaton is not None}
+        return self._of_running_goal(relation, self._permitted(relation, left_out | automata))
+
+    def _of_running_goal(self, relation: EventRelation, condition: Diagram) -> Diagram:
+        """Return a condition on the data of a start as a condition on the variables that hold these data."""
+        equal, diagrams = self.encoding.equal, self.diagrams
+        held = [
+            equal(update.variable, update.value.input)
+            for edge in relation.own_edges
+            for update in edge.updates
+            if isinstance(update.value, sct.InputReference)
+        ]
+        return and_exists(condition, diagrams.all_of(held), relation.inputs) if held else condition
 
     def _permitted(self, relation: EventRelation, left_out: AbstractSet[sct.StatedRequirement]) -> Diagram:
-        """Return the states in which the requirements on an event hold, except those left out."""
-        remaining = [
-            permission for requirement, permission in relation.permissions.items() if requirement not in left_out
-        ]
-        return self.diagrams.all_of(remaining)
+        """Return the states, and inputs of a command, in which the requirements that are not left out hold."""
+        remaining = (requirement for requirement in relation.requirements if requirement not in left_out)
+        return self.diagrams.all_of(map(relation.condition_of, remaining))
 
 
 class GuardedSystem(SupervisedSystem):
@@ -310,10 +320,10 @@ class GuardedSystem(SupervisedSystem):
         known = event_relations(model, encoding) if relations is None else relations
         super().__init__(model, encoding, {relation.event: relation for relation in known}, [])
         #: States in which an event can happen, reachable or not.
-        self.allowed = {event: relation.enabled & self.guard(event) for event, relation in self.relations.items()}
+        self.allowed = {event: relation.allowed_by(self.guard(event)) for event, relation in self.relations.items()}
         supervised = [
-            (self.relations[event], allowed, self.relations[event].step_where(allowed))
-            for event, allowed in self.allowed.items()
+            (relation, self.allowed[event], relation.step_where(self.guard(event)))
+            for event, relation in self.relations.items()
         ]
         self.moves = [(relation, step) for relation, _, step in supervised if step is not None]
         self.supervised_moves = self.moves
@@ -325,7 +335,7 @@ class GuardedSystem(SupervisedSystem):
         return self.encoding.initial & self.encoding.holds(self.supervisor.initial)
 
     def guard(self, event: sct.Event) -> Diagram:
-        """Return the states in which the supervisor allows an event: all states if it has no guard for the event."""
+        """Return the states, and inputs of a command, in which the supervisor allows an event; all without a guard."""
         guard = self.guards.get(event)
         if guard is None:
             return self.diagrams.true

@@ -37,8 +37,9 @@ class Hooks:
     """Optional callbacks of the loop. No callback may call the loop.
 
     `before`: an enabled event is about to happen. If it is a cancel, a trigger or silent, False withholds it until the
-    loop tries it again. `after`: the event has happened. `livelock`: silent events do not settle. It is called once
-    until they have settled again.
+    loop tries it again. For a command with inputs, the callback sets them (`engine.set_inputs`). The loop withholds the
+    command if they are not allowed. `after`: the event has happened. `livelock`: silent events do not settle. It is
+    called once until they have settled again.
     """
 
     before: Callable[[str], bool] | None = None
@@ -242,8 +243,10 @@ class ControlLoop:
         return most
 
     def _run(self, event: str) -> bool:
-        """Run an enabled event unless the caller withholds it. Return whether it happened."""
+        """Run an enabled event unless the caller or its data withholds it. Return whether it happened."""
         if self.hooks.before is not None and not self.hooks.before(event) and event in self._own:
+            return False
+        if not self.engine.permits_inputs(event):
             return False
         self.timers.before(event)
         self.engine.perform(event)

@@ -57,6 +57,11 @@ class Engine:
         self._guards = {
             event.name: self._compile(*(term.condition for term in event.guard.terms)) for event in self.executed.events
         }
+        self._data_guards = {
+            event.name: self._compile(event.guard.data)
+            for event in self.executed.events
+            if event.guard.data is not None
+        }
         self._effects = {event.name: self._steps(event.effect.steps) for event in self.executed.events}
         self._reasons: dict[str, list[tuple[Blocked, Function]]] = {}
         self._failing: dict[str, list[tuple[sct.Requirement, Callable[[], bool]]]] = {}
@@ -115,9 +120,9 @@ class Engine:
         return frozenset(variable.variable or variable.plant for variable in variables)
 
     def blocked_by(self, event: str) -> Blocked | None:
-        """Return the cause that blocks the event in this state. None if it is enabled."""
+        """Return the cause that blocks the event in this state, with its inputs. None if nothing does."""
         if self.enabled(event):
-            return None
+            return None if self.permits_inputs(event) else Blocked.REQUIREMENT
         if event not in self._reasons:
             guard = self._by_name[event].guard
             parts = (guard.plants, guard.assumption, guard.requirement, guard.synthesis)
@@ -146,9 +151,17 @@ class Engine:
         ]
 
     def enabled(self, event: str, state: State | None = None) -> bool:
-        """Return whether the event is enabled in this state, or in another state of this engine."""
+        """Return whether the event is enabled in this state, or in another state of this engine.
+
+        A command with inputs is enabled if some inputs are allowed.
+        """
         cells = self._cells if state is None else state.cells
         return bool(self._guards[event](cells, ()))
+
+    def permits_inputs(self, event: str) -> bool:
+        """Return whether an enabled event is allowed with its present inputs."""
+        guard = self._data_guards.get(event)
+        return guard is None or bool(guard(self._cells, self._inputs))
 
     def set_inputs(self, event: str, data: Mapping[str, Value]) -> None:
         """Set inputs of the event (`i_response`) for this and later events. Integers saturate at their range.
@@ -160,10 +173,10 @@ class Engine:
             self._inputs[position] = self._input_domains[position].internal(value)
 
     def perform(self, event: str, data: Mapping[str, Value] | None = None) -> bool:
-        """Perform the event with this data if it is enabled. Return whether it happened."""
+        """Perform the event with this data if it is enabled and allowed. Return whether it happened."""
         if data:
             self.set_inputs(event, data)
-        if not self.enabled(event):
+        if not (self.enabled(event) and self.permits_inputs(event)):
             return False
         after = list(self._cells)
         for step in self._effects[event]:

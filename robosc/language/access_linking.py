@@ -22,10 +22,12 @@ from robosc.model.semantics.typing import (
     EnumType,
     ObjectType,
     Type,
+    declared_type,
     object_value_type,
     segment_type,
     start_type,
     value_type,
+    value_types,
 )
 
 if TYPE_CHECKING:
@@ -48,6 +50,8 @@ class AccessLinker(NameFindings):
         super().__init__(file, importable)
         self.interfaces = interfaces
         self._types: dict[rsc.Access, list[Type]] = {}
+        #: For each access in a requirement on several commands, the types along it for the data of each further one.
+        self._others: dict[rsc.Access, list[list[Type]]] = {}
         self._properties: dict[rsc.ObjectDataType, Names] = {}
         #: Elements in the index of an instance, which is linked before the instance.
         self._linked: set[ex.Located] = set()
@@ -482,12 +486,19 @@ class AccessLinker(NameFindings):
         # The segments of an access come in order, and each continues from the type of the previous one.
         if access not in self._types:
             self._types[access] = [start_type(access, value_type(access))]
+            self._others[access] = [[other] for other in value_types(access)[1:]] if access.value else []
         types = self._types[access]
         while access.segments[len(types) - 1] is not segment:
             types.append(segment_type(types[-1], access.segments[len(types) - 1]))
         prop = self._property(types[-1], name)
         if prop is not None:
             segment.property = prop
+        # The other commands of a set have the field, too.
+        for others in self._others[access]:
+            while len(others) < len(types):
+                others.append(segment_type(others[-1], access.segments[len(others) - 1]))
+            other = self._property(others[-1], name)
+            others.append(UNKNOWN if other is None else declared_type(other.type))
 
     def _property_value(self, element: rsc.ObjectPropertyValue, name: Name) -> None:
         expected = object_value_type(element.eContainer())

@@ -101,6 +101,16 @@ class Declarations:
         return literal(self.literal(value) if isinstance(value, robosc.EnumValue) else value)
 
 
+def first_value(kind: ex.Type) -> ex.Expression:
+    """Return the first value of a finite type: false, the lower bound, or the first value of the enumeration."""
+    match kind:
+        case ex.IntegerType(minimum=int() as minimum):
+            return literal(minimum)
+        case ex.EnumerationType():
+            return literal(kind.first or kind.enumeration.literals[0])
+    return literal(False)
+
+
 def default_value(enum: robosc.EnumDataType) -> robosc.EnumValue:
     """Return the value of an enum's default rule."""
     return next(rule.value for rule in enum.rules if isinstance(rule, robosc.EnumDefaultRule))

@@ -10,7 +10,7 @@ from robosc.model import expression as ex
 from robosc.model import robosc, rosgraph, sct
 from robosc.model.places import place
 from robosc.model.semantics.communication import RUNNING
-from robosc.model.semantics.cone_of_influence import accesses, read_data
+from robosc.model.semantics.cone_of_influence import accesses, expanded_for, read_data
 from robosc.model.semantics.evaluation import Value, evaluate, literal
 from robosc.model.semantics.instances import PortInstance
 from robosc.model.semantics.naming import Names
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from robosc.m2m.declarations import Declarations
     from robosc.m2m.trace import Trace
-    from robosc.model.semantics.cone_of_influence import InputRead
+    from robosc.model.semantics.cone_of_influence import Carrier, InputRead
     from robosc.model.semantics.instances import Instance, InstanceParameter, InstanceVariable
 
     #: Translates an access with segments, whose indices are translated already. Returns the expression and the type of
@@ -104,16 +104,16 @@ class SctExpressions(_Expressions):
         self,
         expression: ex.Expression,
         within: Instance | None,
-        transition: robosc.Transition | robosc.RequirementTransition | None = None,
+        carrier: Carrier | None = None,
         assigned: InstanceVariable | None = None,
     ) -> ex.Expression:
         """Translate a condition, or the value that a transition assigns to a variable.
 
-        The expression may read the data of the transition's event. `within` is the instance whose text contains it.
+        The expression may read the data of the carrier's event. `within` is the instance whose text contains it.
         Raises ModelError if a comparison of doubles has too many cases.
         """
-        written = self._trace.instances.expanded(expression, within)
-        readings = list(read_data(self._trace.instances, written, within, transition, assigned))
+        written = expanded_for(self._trace.instances, expression, within, carrier)
+        readings = list(read_data(self._trace.instances, written, within, carrier, assigned))
         inputs = [reading for reading in readings if reading.source is not None and not reading.is_readable]
         translated = self._translated(written, within, {reading.part: self._input(reading) for reading in inputs})
         demanded = [reading for reading in readings if reading.is_readable]

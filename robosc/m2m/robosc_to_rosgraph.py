@@ -201,6 +201,8 @@ class _RoboscToRosgraph:
             for field in self.fields(provided.data, statement.within, lone, port.instance.data_type(sent)):
                 alternative.fields.append(field)
             sending.alternatives.append(alternative)
+        if (port, event) in self.inputs:
+            sending.inputs.extend(self.input_assignments(port, event, self.value_of(port, event)))
         return sending
 
     def fields(
@@ -265,8 +267,16 @@ class _RoboscToRosgraph:
         if event.section is not None:
             value = self.value_of(port, event)
             self.carriers[reception] = self.interface(port.communication), event.section
+        reception.inputs.extend(self.input_assignments(port, event, value))
+        return reception
+
+    def input_assignments(
+        self, port: PortInstance, event: PortEvent, value: ReceivedValue | None
+    ) -> Iterator[rosgraph.InputAssignment]:
+        """Return the assignments to the inputs of an event; `value` is the meaning of `value` in its data."""
         for carried, declared in self.inputs.get((port, event), ()):
             access: ex.Expression
+            within: Instance | None = port.instance
             if isinstance(carried, Data):
                 access = robosc.Access(
                     value=True, segments=[robosc.PropertySegment(property=part) for part in carried.path]
@@ -275,9 +285,8 @@ class _RoboscToRosgraph:
                 access = robosc.ErrorReason(enumeration=carried.enum)
             else:
                 access = carried.expression
-            assigned = self.expressions(access, port.instance, value)
-            reception.inputs.append(rosgraph.InputAssignment(input=declared, value=assigned))
-        return reception
+                within = self.trace.cone.data[carried].reason.within
+            yield rosgraph.InputAssignment(input=declared, value=self.expressions(access, within, value))
 
     def field(self, port: PortInstance, event: PortEvent) -> str:
         """Return the field of a basic value."""
@@ -426,7 +435,7 @@ class _RoboscToRosgraph:
             return None
         port = self.instances.port(transition.communicationType, instance)
         event = event_of(transition.communicationType, transition.resultType)
-        has_data = port is not None and event is not None and event.feature and not event.is_sent
+        has_data = port is not None and event is not None and event.feature
         return self.value_of(port, event) if has_data else None  # type: ignore[arg-type]
 
 

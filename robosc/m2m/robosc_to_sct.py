@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeVar
 
-from robosc.m2m.declarations import Declarations
+from robosc.m2m.declarations import Declarations, first_value
 from robosc.m2m.expressions import SctExpressions
 from robosc.m2m.requirement_automata import RequirementAutomaton
 from robosc.m2m.trace import Trace
@@ -17,20 +17,22 @@ from robosc.model.semantics.communication import (
     EXECUTING,
     IDLE,
     READY,
+    RUNNING,
     WAITING,
     events,
     port_event_of,
 )
-from robosc.model.semantics.cone_of_influence import cone_of_influence, guard_of
+from robosc.model.semantics.cone_of_influence import commands, cone_of_influence, guard_of
 from robosc.model.semantics.durations import UNITS, bounds, milliseconds, set_milliseconds, set_on_robot
 from robosc.model.semantics.expansion import constant_value
 from robosc.model.semantics.inputs import Data, FailureReason
 from robosc.model.semantics.instances import Instance, Instances, InstanceVariable, PortInstance, Statement
 from robosc.model.semantics.naming import Names
 from robosc.model.semantics.printing import RoboscPrinter, conjunction, disjunction
+from robosc.model.semantics.walks import copy_tree, fold, with_operands
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from robosc.model.places import Place
     from robosc.model.semantics.inputs import InputSource
@@ -100,6 +102,11 @@ class _RoboscToSct:
         self.input_sources: dict[PortInstance, list[InputSource]] = {}
         for carried in self.trace.cone.data:
             self.input_sources.setdefault(carried.port, []).append(carried)
+        #: For each command, the data that requirements on it read, in the order of discovery.
+        self.required_data: dict[PortInstance, dict[InputSource, None]] = {}
+        for reading in self.trace.cone.readings:
+            if reading.is_required and reading.source is not None:
+                self.required_data.setdefault(reading.source.port, {})[reading.source] = None
 
     def run(self) -> tuple[sct.SupervisoryControlModel, Trace]:
         # Create referenced elements first: a guard may name any component's state.
@@ -146,9 +153,33 @@ class _RoboscToSct:
         names = dict.fromkeys(name for origin, _, end in edges for name in (origin, end))
         first = next(iter(names))
         places = {name: _location(plant, name, initial=name == first, marked=name == first) for name in names}
-        for origin, event, end in edges:
-            _edge(places[origin], event, places[end])
         self.inputs(plant, port)
+        goal = self.goal(plant, port)
+        for origin, event, end in edges:
+            edge = _edge(places[origin], event, places[end])
+            for input_element, variable in goal.items():
+                if event.kind == sct.EventKind.trigger:
+                    edge.updates.append(sct.Update(variable=variable, value=sct.InputReference(input=input_element)))
+                elif origin in RUNNING and end not in RUNNING:
+                    edge.updates.append(sct.Update(variable=variable, value=copy_tree(variable.initial)))
+
+    def goal(self, plant: sct.Plant, port: PortInstance) -> dict[sct.Input, sct.DiscreteVariable]:
+        """Add the variables that hold the data of an action's goal while requirements judge it, by their inputs.
+
+        They have their first value when no goal is running.
+        """
+        if not isinstance(port.communication, robosc.Action):
+            return {}
+        goal = {}
+        for source in self.required_data.get(port, ()):
+            carried = self.trace.inputs[source]
+            name = f"goal_{carried.name.removeprefix(f'i_{source.event.kind.name}_')}"
+            goal[carried] = sct.DiscreteVariable(
+                name=name, type=copy_tree(carried.type), initial=first_value(carried.type), source=plant.source
+            )
+        plant.variables.extend(goal.values())
+        self.trace.goals |= goal
+        return goal
 
     def plant(self, name: str, kind: sct.PlantKind, origin: str | None, source: Place | None) -> sct.Plant:
         plant = sct.Plant(name=self.plant_names.fresh(name), kind=kind, origin=origin, source=source)
@@ -380,9 +411,7 @@ class _RoboscToSct:
             port: [] for port in self.instances.ports() if isinstance(port.communication, robosc.Action)
         }
         for requirement in self.instances.statements(robosc.CommunicationRequirement):
-            references = requirement.element.target.communicationTypes
-            named = [self.instances.port(reference, requirement.within) for reference in references]
-            for port in dict.fromkeys(port for port in named if port is not None):
+            for port in commands(self.instances, requirement):
                 self.requirement(requirement, port)
                 if port in on_action:
                     on_action[port].append(requirement)
@@ -406,7 +435,7 @@ class _RoboscToSct:
         target = sct.Requirement(
             event=self.trace.event(port, sct.EventKind.trigger),
             kind=sct.RequirementKind.disables if disables else sct.RequirementKind.needs,
-            condition=self.expressions(requirement.condition, within),
+            condition=self.expressions(requirement.condition, within, port),
             name=_statement_name(statement),
             text=f"{begin} {condition} disables {name}" if disables else f"{begin} {name} needs {condition}",
             source=requirement.source,
@@ -535,7 +564,9 @@ class _RoboscToSct:
         """
         broken: list[ex.Expression] = []
         for requirement in requirements:
-            condition = self.expressions(requirement.element.condition, requirement.within)
+            condition = _with_goal(
+                self.expressions(requirement.element.condition, requirement.within, port), self.trace.goals
+            )
             disables = isinstance(requirement.element, robosc.DisablesRequirement)
             broken.append(condition if disables else ex.Negation(operand=condition))
         name = self.shown(port)
@@ -554,6 +585,17 @@ class _RoboscToSct:
     def shown(self, port: PortInstance) -> str:
         name = port.communication.name
         return f"{port.instance.name}.{name}" if self.communication_name(port) != name else name
+
+
+def _with_goal(condition: ex.Expression, goals: Mapping[sct.Input, sct.DiscreteVariable]) -> ex.Expression:
+    """Return a condition on a command's data as a condition on the data of the running goal."""
+
+    def replaced(original: ex.Expression, inside: list[ex.Expression]) -> ex.Expression:
+        if isinstance(original, sct.InputReference):
+            return sct.VariableReference(variable=goals[original.input])
+        return with_operands(original, inside) if inside else copy_tree(original)
+
+    return fold(replaced, condition)
 
 
 def _statement_name(statement: Statement[_Definition]) -> str | None:

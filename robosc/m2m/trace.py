@@ -35,6 +35,7 @@ class Trace:
     plants: dict[PortInstance, sct.Plant] = field(default_factory=dict)
     events: dict[tuple[PortInstance, str], sct.Event] = field(default_factory=dict)
     inputs: dict[InputSource, sct.Input] = field(default_factory=dict)
+    goals: dict[sct.Input, sct.DiscreteVariable] = field(default_factory=dict)
     behaviours: dict[Instance, sct.Plant] = field(default_factory=dict)
     locations: dict[tuple[Instance, robosc.State], sct.Location] = field(default_factory=dict)
     own: dict[tuple[Instance, robosc.Transition], sct.Event] = field(default_factory=dict)

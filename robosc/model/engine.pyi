@@ -156,16 +156,17 @@ class Role:
     timeout: ClassVar[Role]
 
 class Guard:
-    """The conjunction of all terms, the condition of an event. No term is constant, except the single term `false` of a guard that never holds. No two terms are equal."""
+    """The conjunction of all terms, the condition of an event on the state. No term is constant, except the single term `false` of a guard that never holds. No two terms are equal."""
     terms: MutableSequence[Term]
     plants: expression.Expression | None
     assumption: expression.Expression | None
     requirement: expression.Expression | None
     synthesis: expression.Expression | None
+    data: expression.Expression | None
     def eContainer(self) -> Any: ...
     @property
     def eClass(self) -> Any: ...
-    def __init__(self, *, terms: Iterable[Term] = ..., plants: expression.Expression | None = ..., assumption: expression.Expression | None = ..., requirement: expression.Expression | None = ..., synthesis: expression.Expression | None = ...) -> None: ...
+    def __init__(self, *, terms: Iterable[Term] = ..., plants: expression.Expression | None = ..., assumption: expression.Expression | None = ..., requirement: expression.Expression | None = ..., synthesis: expression.Expression | None = ..., data: expression.Expression | None = ...) -> None: ...
 
 class Term:
     """A conjunct of a guard."""

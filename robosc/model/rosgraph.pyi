@@ -95,8 +95,9 @@ class Sending(expression.NamedElement):
     """Data that the node sends with an event. It has the name of the communication in the robot model."""
     event: sct.Event
     alternatives: MutableSequence[ProvidedData]
+    inputs: MutableSequence[InputAssignment]
     onChange: bool | None
-    def __init__(self, *, event: sct.Event | None = ..., alternatives: Iterable[ProvidedData] = ..., onChange: bool | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
+    def __init__(self, *, event: sct.Event | None = ..., alternatives: Iterable[ProvidedData] = ..., inputs: Iterable[InputAssignment] = ..., onChange: bool | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class ProvidedData(expression.Located):
     """The data of one provide statement."""

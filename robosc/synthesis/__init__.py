@@ -141,13 +141,13 @@ def synthesize(
     """Synthesize the maximally permissive, controllable, non-blocking supervisor of a valid model.
 
     The model is not changed. `sct.ecore` documents the meaning of plants, events and expressions. Inputs are parameters
-    of their event: an uncontrollable event stays controllable for all of their values; a marked state, and a state that
-    a requirement wants to be reachable, is reachable for some of them. `memory` is the limit of the decision diagrams
+    of their event. The supervisor copes with all values of an uncontrollable event. It decides on each combination of
+    values of a controllable event. A marked state, and a state that a requirement wants to be reachable, is reachable
+    for some values. `memory` is the limit of the decision diagrams
     in bytes. The diagrams grow as needed; beyond the limit, MemoryError is raised. Pass new `statistics` to follow the
     progress from another thread.
 
-    Raises a located ModelError if synthesis does not support the model: doubles, strings, and inputs of a controllable
-    event.
+    Raises a located ModelError if synthesis does not support the model: doubles and strings.
     """
     return solve(model, lambda solution: solution.synthesis, memory=memory, statistics=statistics)
 
@@ -200,19 +200,6 @@ def use_encoding(model: sct.SupervisoryControlModel, look: Callable[[Encoding], 
     )
 
 
-def _refuse_data_of_controllable_events(model: sct.SupervisoryControlModel) -> None:
-    events = [event for plant in model.plants for event in plant.events if event.controllable and event.inputs]
-    if events:
-        raise ModelError(
-            [
-                Diagnostic(
-                    *place(event), Severity.ERROR, "type", f"the controllable event {event_name(event)} carries inputs"
-                )
-                for event in events
-            ]
-        )
-
-
 def _refuse_overlapping(relations: Sequence[EventRelation]) -> None:
     """Raise ModelError if two edges of a controllable event overlap.
 
@@ -243,7 +230,6 @@ def _with_states(
     supervising: _Supervising,
 ) -> T:
     """Compute the supervised states of a model and return the result of `use`."""
-    _refuse_data_of_controllable_events(model)
     with statistics.during(Phase.ORDER):
         layout = BitLayout(model)
     return with_enough_memory(
@@ -304,7 +290,7 @@ def _solved(all_found: _Solution, statistics: Statistics, effort: int | None) ->
             started = encoding.initial & fixpoint.controlled
             supervisor.initial = separating_expression(encoding, started, left_out, encoding.layout.state)
         # From a controlled state, an event leads to a controlled state exactly if its guard allows it.
-        supervised = [(relation, relation.enabled & relation.requirement, relation.step) for relation in relations]
+        supervised = [(relation, relation.allowed_by(relation.permitted), relation.step) for relation in relations]
         unwritten = {
             permission.relation.event: permission.where.node_count()
             for permission in permissions

@@ -208,6 +208,10 @@ class Encoding:
         """Return the condition that the element's next code equals `code`."""
         return self._same(self.next_bits(element), code)
 
+    def equal(self, first: sct.DiscreteVariable | sct.Input, second: sct.DiscreteVariable | sct.Input) -> Diagram:
+        """Return the condition that two elements of one type have the same value."""
+        return self._same(self.bits(first), self.bits(second))
+
     def keeps(self, element: Element) -> Diagram:
         """Return the condition that the element keeps its value."""
         if element not in self._unchanged:

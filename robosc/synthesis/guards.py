@@ -51,23 +51,37 @@ def permission(
     for the condition that synthesis adds.
 
     In each of these states, the plants enable the event and both parts of the guard hold exactly if the requirements
-    hold and the event leads to such a state again.
+    hold and the event leads to such a state again. The guard of a command with inputs reads them, and `someData` holds
+    where some inputs are allowed.
     """
     step = relation.step if restricts else None
     states, domains = controlled.factor(relation.concerned)
     if step is None:
         states = controlled.onto(relation.concerned)
-    enabled = states & relation.enabled
-    required = enabled & relation.requirement
-    allowed = required if step is None else required & step.preimage(states)
+    enabled = states & (relation.happens if relation.has_data else relation.enabled)
+    required = enabled & relation.permitted
+    allowed = required
+    if step is not None:
+        allowed = required & (relation.leading_to(states) if relation.has_data else step.preimage(states))
     guard = sct.EventGuard(event=relation.event, everEnabled=allowed.satisfiable())
     if enabled != required:
         condition = conjunction(_condition(requirement) for requirement in relation.requirements)
         assert condition is not None
         guard.requirement = simplify(condition, enabled, encoding)
         guard.requirements.extend(
-            requirement for requirement, holds in relation.permissions.items() if (enabled & ~holds).satisfiable()
+            requirement
+            for requirement in relation.requirements
+            if (enabled & ~relation.condition_of(requirement)).satisfiable()
         )
+    where = relation.allowed_by(allowed) if relation.has_data else allowed
+    withheld = states & relation.available & ~where if relation.has_data else encoding.diagrams.false
+    if withheld.satisfiable():
+        guard.someData = (
+            separating_expression(encoding, where, withheld, domains)
+            if guard.everEnabled
+            else ex.BooleanLiteral(value=False)
+        )
+    domains = [*domains, *(encoding.layout.domains[carried] for carried in relation.event.inputs)]
     if allowed != required:
         guard.synthesis = (
             separating_expression(encoding, allowed, required & ~allowed, domains, effort)
@@ -76,7 +90,7 @@ def permission(
         )
     encoding.diagrams.tidy()
     return Permission(
-        relation, guard, controlled.states, allowed, unwritten=allowed != required and guard.synthesis is None
+        relation, guard, controlled.states, where, unwritten=allowed != required and guard.synthesis is None
     )
 
 

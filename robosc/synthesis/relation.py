@@ -15,6 +15,7 @@ from robosc.synthesis.encoding import referenced_elements
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
+    from robosc.model import expression as ex
     from robosc.synthesis.encoding import Element, Encoding
 
     Move = tuple["EventRelation", "SymbolicStep"]
@@ -109,7 +110,9 @@ class EventRelation:
         """Compute the conditions of the event from its edges, grouped by plant, and its requirements.
 
         `enabled_by` maps each of these plants to the states in which it enables the event. `permissions` maps each
-        requirement to the states in which it allows the event.
+        requirement to the states in which it allows the event, and `requirement` is the conjunction. If the event is a
+        command with inputs, the sets hold the states in which this is true for some of its data. `permitted` is then a
+        condition on states and inputs; for other events, it is `requirement`.
         """
         self.event = event
         self.requirements = requirements
@@ -118,26 +121,81 @@ class EventRelation:
         changed = [element for edges in self._edges for element in _changed(edges)]
         self.changed = tuple(element for element in changed if encoding.layout.domains[element].size > 1)
         self.enabled_by = {edges[0].target.eContainer(): self.states_taking(edges) for edges in self._edges}
-        self.enabled = encoding.diagrams.all_of(self.enabled_by.values())
+        self.enabled = self.happens.exists(self.inputs) if self.has_data else self._all_of(self.enabled_by.values())
         self.permissions = {requirement: self._permitted(requirement) for requirement in requirements}
-        self.requirement = encoding.diagrams.all_of(self.permissions.values())
+        if self.has_data:
+            self.permitted = self._all_of(map(self.condition_of, requirements))
+            self.requirement = ~self.enabled | self.allowed_by(self.permitted)
+        else:
+            self.permitted = self.requirement = self._all_of(self.permissions.values())
+
+    @property
+    def has_data(self) -> bool:
+        """Whether the supervisor decides with the inputs: the event is a command that carries them."""
+        return self.event.controllable and bool(self.event.inputs)
+
+    @cached_property
+    def happens(self) -> Diagram:
+        """States and inputs for which all plants have an edge for the event."""
+        encoding = self._encoding
+        taking = (
+            encoding.diagrams.any_of(encoding.source(edge) & encoding.holds(edge.guard) for edge in edges)
+            for edges in self._edges
+        )
+        return self._all_of([encoding.whole(self.event.inputs), *taking])
+
+    @cached_property
+    def available(self) -> Diagram:
+        """States in which each plant has an edge for the event that data might enable."""
+        encoding = self._encoding
+        return self._all_of(
+            encoding.diagrams.any_of(
+                encoding.source(edge) & encoding.holds(None if reads_inputs(edge.guard) else edge.guard)
+                for edge in edges
+            )
+            for edges in self._edges
+        )
+
+    def allowed_by(self, condition: Diagram) -> Diagram:
+        """Return the states in which the event can happen under a condition, which may read the inputs of a command."""
+        if not self.has_data:
+            return self.enabled & condition
+        return and_exists(self.happens, condition, self.inputs)
+
+    def leading_to(self, states: Diagram) -> Diagram:
+        """Return the states and inputs with which a command leads to one of `states`."""
+        if not self.changed:
+            return states
+        domains, diagrams = self._encoding.layout.domains, self._encoding.diagrams
+        present = diagrams.cube(level for element in self.changed for level in domains[element].levels)
+        following = diagrams.cube(level for element in self.changed for level in domains[element].next_levels)
+        same = diagrams.all_of(self._encoding.keeps(element) for element in self.changed)
+        return and_exists(self.with_inputs(), and_exists(states, same, present), following)
+
+    def _all_of(self, diagrams: Iterable[Diagram]) -> Diagram:
+        return self._encoding.diagrams.all_of(diagrams)
+
+    def condition_of(self, requirement: sct.Requirement) -> Diagram:
+        """Return the states in which a requirement allows the event, and the inputs if it is a command with data."""
+        return self._encoding.permits(requirement) if self.has_data else self.permissions[requirement]
+
+    @property
+    def own_edges(self) -> Sequence[sct.Edge]:
+        """Edges of the event in its own plant."""
+        return next((edges for edges in self._edges if edges[0].target.eContainer() is self.event.eContainer()), ())
 
     def _permitted(self, requirement: sct.Requirement) -> Diagram:
-        """Return the states in which a requirement allows the event with all inputs for which the plants enable it."""
+        """Return the states in which a requirement allows the event.
+
+        It allows an event of the robot if it holds with all inputs for which the plants enable the event, and a command
+        if it holds with some of them.
+        """
         permits = self._encoding.permits(requirement)
-        if not any(isinstance(element, sct.Input) for element in referenced_elements(requirement.condition)):
+        if not reads_inputs(requirement.condition):
             return permits
-        encoding, diagrams = self._encoding, self._encoding.diagrams
-        happens = diagrams.all_of(
-            [
-                encoding.whole(self.event.inputs),
-                *(
-                    diagrams.any_of(encoding.source(edge) & encoding.holds(edge.guard) for edge in edges)
-                    for edges in self._edges
-                ),
-            ]
-        )
-        return ~(happens & ~permits).exists(self._inputs)
+        if self.has_data:
+            return ~self.enabled | self.allowed_by(permits)
+        return ~(self.happens & ~permits).exists(self.inputs)
 
     def with_inputs(self) -> Diagram:
         """Return the relation over present values, inputs and next values, without the requirements."""
@@ -181,7 +239,7 @@ class EventRelation:
     @cached_property
     def step(self) -> SymbolicStep | None:
         """Step of the event in the states in which the requirements allow it, too."""
-        return self.plant_step if self.requirement.valid() else self.step_where(self.requirement)
+        return self.plant_step if self.permitted.valid() else self.step_where(self.permitted)
 
     @cached_property
     def touched(self) -> frozenset[Element]:
@@ -199,12 +257,12 @@ class EventRelation:
         return self.touched.union(*(referenced_elements(requirement.condition) for requirement in self.requirements))
 
     def step_where(self, condition: Diagram) -> SymbolicStep | None:
-        """Return the step of the event under a condition; None if the event changes nothing."""
+        """Return the step of the event under a condition on states and inputs; None if the event changes nothing."""
         if not self.changed:
             return None
         domains = self._encoding.layout.domains
         diagrams = self._encoding.diagrams
-        relation = and_exists(self.with_inputs(), condition, self._inputs)
+        relation = and_exists(self.with_inputs(), condition, self.inputs)
         present = [level for element in self.changed for level in domains[element].levels]
         following = [level for element in self.changed for level in domains[element].next_levels]
         return SymbolicStep(
@@ -221,7 +279,7 @@ class EventRelation:
         )
 
     @property
-    def _inputs(self) -> Diagram:
+    def inputs(self) -> Diagram:
         """Variables of the inputs of the event."""
         domains = self._encoding.layout.domains
         return self._encoding.diagrams.cube(
@@ -234,7 +292,7 @@ class EventRelation:
         enabled = encoding.diagrams.any_of(encoding.source(edge) & encoding.holds(edge.guard) for edge in edges)
         if not any(edge.guard is not None for edge in edges):
             return enabled
-        return and_exists(enabled, encoding.whole(self.event.inputs), self._inputs)
+        return and_exists(enabled, encoding.whole(self.event.inputs), self.inputs)
 
     def overlapping_edges(self) -> list[sct.Edge]:
         """Return the edges that overlap with an earlier edge of the same plant."""
@@ -329,6 +387,11 @@ def required_moves(relations: Iterable[EventRelation]) -> list[Move]:
 def steps(moves: Iterable[Move]) -> list[SymbolicStep]:
     """Return the steps of the events."""
     return [step for _, step in moves]
+
+
+def reads_inputs(condition: ex.Expression | None) -> bool:
+    """Return whether a condition reads inputs."""
+    return any(isinstance(element, sct.Input) for element in referenced_elements(condition))
 
 
 def _changed(edges: Sequence[sct.Edge]) -> list[Element]:

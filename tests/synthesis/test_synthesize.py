@@ -126,12 +126,6 @@ def test_doubles_are_refused_where_they_stand(condition):
     assert (finding.file, finding.span.line, finding.span.column, finding.rule) == ("robot.rscd", 3, 7, "type")
 
 
-def test_data_that_comes_with_a_controllable_event_is_refused():
-    made = model([plant("P", {"only": [edge("c")]}, controllable={"c": ["x"]}, inputs={"x": "bool"})])
-    with pytest.raises(ModelError, match=r"P\.c carries inputs"):
-        synthesize(made)
-
-
 def test_the_model_stays_as_it_is():
     made = philosophers(3)
     synthesize(made)

@@ -148,6 +148,7 @@ def _guard(guard: GuardTerms, shared: SharedTerms) -> engine.Guard:
         assumption=assumption,
         requirement=requirement,
         synthesis=synthesis,
+        data=None if guard.data.constant == 1 else build_expression(guard.data),
     )
 
 

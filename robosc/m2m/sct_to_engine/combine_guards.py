@@ -22,10 +22,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class GuardTerms:
-    """The condition under which an event can happen: its four parts, and their conjunction.
+    """The condition under which an event can happen: its four parts on the state, and their conjunction.
 
     `by_plant` holds the condition that a plant has an edge for the event. `assumption` is the conjunction of these for
-    assumptions, and `plants` for the other plants.
+    assumptions, and `plants` for the other plants. The four parts of a command with inputs hold where some inputs are
+    allowed. `data` is the further condition on its inputs.
     """
 
     by_plant: Mapping[sct.Plant, Term]
@@ -34,6 +35,7 @@ class GuardTerms:
     requirement: Term
     synthesis: Term
     whole: Term
+    data: Term
 
     @property
     def parts(self) -> list[tuple[engine.Origin, Term]]:
@@ -52,46 +54,71 @@ def combine_guards(
     """Return the guard of each event: all its plants have an edge for it, and both parts of the supervisor hold."""
     assert model.supervisor is not None
     supervised = {guard.event: guard for guard in model.supervisor.guards}
-    combined = {}
-    for event, by_plant in edges.items():
-        guard = supervised.get(event)
-        possible = {plant: _possible(plant, taken, lower) for plant, taken in by_plant.items()}
-        assumed = [term for plant, term in possible.items() if plant.kind == sct.PlantKind.assumption]
-        others = [term for plant, term in possible.items() if plant.kind != sct.PlantKind.assumption]
-        parts = (
-            lower.terms.junction(engine.And, others),
-            lower.terms.junction(engine.And, assumed),
-            lower(guard.requirement if guard else None),
-            lower(guard.synthesis if guard else None),
-        )
-        combined[event] = GuardTerms(possible, *parts, lower.terms.junction(engine.And, parts))
-    return combined
+    return {event: _guard(event, by_plant, supervised.get(event), lower) for event, by_plant in edges.items()}
 
 
-def _possible(plant: sct.Plant, edges: Edges, lower: Lowering) -> Term:
-    """Return the condition that a plant has an edge for an event. Locations with the same guard are combined."""
+def _guard(
+    event: sct.Event, by_plant: Mapping[sct.Plant, Edges], guard: sct.EventGuard | None, lower: Lowering
+) -> GuardTerms:
+    junction, possible, available, data = lower.terms.junction, {}, {}, []
+    for plant, taken in by_plant.items():
+        possible[plant] = available[plant] = _possible(plant, taken, lower)
+        if _reads_inputs(possible[plant]):
+            _refuse_inputs_of_robot(event, taken)
+            available[plant] = _possible(plant, taken, lower, with_some_data=True)
+            data.append(possible[plant])
+    some = lower(guard.someData if guard else None)
+    supervising = []
+    for part in (guard.requirement, guard.synthesis) if guard else (None, None):
+        term = lower(part)
+        if _reads_inputs(term):
+            data.append(term)
+            term = some
+        supervising.append(term)
+    if some.constant != 1 and some not in supervising:
+        supervising[1] = junction(engine.And, [supervising[1], some])
+    assumed = [term for plant, term in available.items() if plant.kind == sct.PlantKind.assumption]
+    others = [term for plant, term in available.items() if plant.kind != sct.PlantKind.assumption]
+    parts = junction(engine.And, others), junction(engine.And, assumed), supervising[0], supervising[1]
+    return GuardTerms(possible, *parts, junction(engine.And, parts), junction(engine.And, data))
+
+
+def _reads_inputs(condition: Term) -> bool:
+    return any(isinstance(declaration, engine.Input) for declaration in condition.reads())
+
+
+def _possible(plant: sct.Plant, edges: Edges, lower: Lowering, *, with_some_data: bool = False) -> Term:
+    """Return the condition that a plant has an edge for an event. Locations with the same guard are combined.
+
+    `with_some_data`: conditions that read inputs are true.
+    """
+
+    def one_of(leaving: Sequence[sct.Edge]) -> Term:
+        whole = _one_of(leaving, lower)
+        return lower.terms.true if with_some_data and _reads_inputs(whole) else whole
+
     if None in edges:
-        return _one_of(edges[None], lower)
-    return lower.where(plant, {location: _one_of(leaving, lower) for location, leaving in edges.items()})
+        return one_of(edges[None])
+    return lower.where(plant, {location: one_of(leaving) for location, leaving in edges.items()})
+
+
+def _refuse_inputs_of_robot(event: sct.Event, edges: Edges) -> None:
+    """Raise ModelError for an event of the robot: its data is unknown until it happens."""
+    if not event.controllable:
+        message = f"`{event_name(event)}` depends on its data, which the controller only receives with the event"
+        hint = "remove it from plant invariants, or add an edge for all other data"
+        first = next(edge for leaving in edges.values() for edge in leaving)
+        raise ModelError([Diagnostic(*place(first), Severity.ERROR, "cif-construct", message, hint)])
 
 
 def _one_of(edges: Sequence[sct.Edge], lower: Lowering) -> Term:
-    """Return the condition that one of the guards holds, without parts that earlier guards imply.
-
-    Raises ModelError if it depends on the data of the event, which is unknown until the event happens.
-    """
+    """Return the condition that one of the guards holds, without parts that earlier guards imply."""
     # Lower each guard, even if it is not needed: it may be invalid in an sct model.
     guards = [lower(edge.guard) for edge in edges]
     if _all_covered(edges, lower):
         return lower.terms.true
     denied: set[Term] = set()
-    whole = lower.terms.junction(engine.Or, [remaining_guard(guard, denied, lower.terms) for guard in guards])
-    if any(isinstance(declaration, engine.Input) for declaration in whole.reads()):
-        name = event_name(edges[0].event)
-        message = f"`{name}` depends on its data, which the controller only receives with the event"
-        hint = "remove it from plant invariants, or add an edge for all other data"
-        raise ModelError([Diagnostic(*place(edges[0]), Severity.ERROR, "cif-construct", message, hint)])
-    return whole
+    return lower.terms.junction(engine.Or, [remaining_guard(guard, denied, lower.terms) for guard in guards])
 
 
 def _all_covered(edges: Sequence[sct.Edge], lower: Lowering) -> bool:

@@ -28,6 +28,9 @@ def name_reasons(
     assert model.supervisor is not None
     for requirement in model.requirements:
         forbidden = lower(requirement.condition, positive=requirement.kind == sct.RequirementKind.disables)
+        if any(isinstance(declaration, engine.Input) for declaration in forbidden.reads()):
+            nothing_allowed = lower.terms.opposite(guards[requirement.event].whole)
+            forbidden = lower.terms.junction(engine.Or, [forbidden, nothing_allowed])
         if forbidden.constant != 0:
             reason = _reason(engine.Origin.requirement, forbidden, requirement.text or "a requirement")
             reason.requirement = requirement

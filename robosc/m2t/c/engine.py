@@ -150,6 +150,10 @@ class _Preparation:
             if event.guard.terms or event.remarks
         ]
         effects = [(event, self._printer.effect(event.effect)) for event in events if event.effect.steps]
+        data_guards = [
+            (event, self._printer.lines(event.guard.data)) for event in events if event.guard.data is not None
+        ]
+        in_data_guards = [node for event, _ in data_guards for _, node in tree(event.guard.data)]
         in_guards = [node for event in events for term in event.guard.terms for _, node in tree(term)]
         in_effects = [node for event in events for _, node in tree(event.effect)]
         return {
@@ -164,6 +168,8 @@ class _Preparation:
             "guards": _merged([(self._enumerator(event), remarks, lines, False) for event, remarks, lines in guards])
             if events
             else _merged([(f"{self._names.prefix}_nothing", "", ["false"], False)]),
+            "data_guards": _merged([(self._enumerator(event), "", lines, False) for event, lines in data_guards]),
+            "data_guards_read_state": any(isinstance(node, engine.VariableReference) for node in in_data_guards),
             "guards_read_state": any(
                 isinstance(node, (engine.VariableReference, engine.ConditionReference)) for node in in_guards
             ),

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeGuard
+from typing import TYPE_CHECKING, TypeAlias, TypeGuard
 
 from robosc.model import expression as ex
 from robosc.model import robosc
-from robosc.model.semantics.communication import data_type, event_of, port_event_of
+from robosc.model.semantics.communication import data_type, event_of, port_event_of, sending_event, sent_type
 from robosc.model.semantics.inputs import ComputedValue, inputs_in, may_be_missing, readable
-from robosc.model.semantics.typing import declared_type
+from robosc.model.semantics.instances import PortInstance
+from robosc.model.semantics.typing import declared_type, read_from
 from robosc.model.semantics.walks import parts
 
 if TYPE_CHECKING:
@@ -17,8 +18,11 @@ if TYPE_CHECKING:
 
     from robosc.model.semantics.communication import PortEvent
     from robosc.model.semantics.inputs import InputSource
-    from robosc.model.semantics.instances import Instance, Instances, InstanceVariable
+    from robosc.model.semantics.instances import Instance, Instances, InstanceVariable, Statement
     from robosc.model.semantics.typing import Type
+
+    #: Place of an expression that may read data: a transition, or the command that a requirement restricts.
+    Carrier: TypeAlias = robosc.Transition | robosc.RequirementTransition | PortInstance
 
 #: Maximum number of valuations in a table of a comparison of doubles. The table ranges over the integers that the
 #: comparison depends on. A larger table would exceed any model that contains it.
@@ -56,6 +60,7 @@ class InputRead:
     """A part of an expression that reads the data of an event, with its input; None if it cannot be an input.
 
     `is_readable`: the entry stands for no part. Its input is whether the whole expression can be computed.
+    `is_required`: a requirement on the command reads it.
     """
 
     whole: ex.Expression
@@ -64,6 +69,7 @@ class InputRead:
     reason: NeedReason
     value: Type
     is_readable: bool = False
+    is_required: bool = False
 
 
 @dataclass(frozen=True)
@@ -105,7 +111,7 @@ def cone_of_influence(instances: Instances) -> ConeOfInfluence:
 
     for condition in conditions(instances):
         read(condition.expression, condition.within, None)
-        result.readings.extend(read_data(instances, condition.expression, condition.within, condition.transition))
+        result.readings.extend(read_data(instances, condition.expression, condition.within, condition.carrier))
     while queue:
         for assigned in assignments.get(queue.pop(0), ()):
             result.computations.append(assigned)
@@ -120,13 +126,13 @@ def cone_of_influence(instances: Instances) -> ConeOfInfluence:
 class EvaluatedExpression:
     """An expanded expression that the supervisor itself evaluates, with its place.
 
-    `within` is the instance whose text contains it, or None for the robot. `transition` is the transition that it
-    guards.
+    `within` is the instance whose text contains it, or None for the robot. `carrier` determines the event whose data it
+    reads.
     """
 
     expression: ex.Expression
     within: Instance | None
-    transition: robosc.Transition | robosc.RequirementTransition | None = None
+    carrier: Carrier | None = None
 
 
 def guard_of(transition: robosc.Transition) -> ex.Expression | None:
@@ -141,42 +147,57 @@ def conditions(instances: Instances) -> Iterator[EvaluatedExpression]:
             guard = guard_of(transition)
             if guard is not None:
                 yield EvaluatedExpression(instances.expanded(guard, instance), instance, transition)
-    for condition, within, following in _statement_needs(instances):
+    for condition, within, carrier in _statement_needs(instances):
         if condition is not None:
-            yield EvaluatedExpression(instances.expanded(condition, within), within, following)
+            yield EvaluatedExpression(expanded_for(instances, condition, within, carrier), within, carrier)
 
 
-def _statement_needs(
-    instances: Instances,
-) -> Iterator[tuple[ex.Expression | None, Instance | None, robosc.RequirementTransition | None]]:
+def expanded_for(
+    instances: Instances, expression: ex.Expression, within: Instance | None, carrier: Carrier | None
+) -> ex.Expression:
+    """Return the expanded expression. In a requirement, `value` has the type of the command's data."""
+    expanded = instances.expanded(expression, within)
+    if not isinstance(carrier, PortInstance):
+        return expanded
+    return read_from(expanded, declared_type(sent_type(carrier.communication)))
+
+
+def _statement_needs(instances: Instances) -> Iterator[tuple[ex.Expression | None, Instance | None, Carrier | None]]:
     """Iterate over the conditions of requirements, properties, assumptions and statements that provide data."""
     for automaton in instances.statements(robosc.AutomatonRequirement):
         transitions = (transition for state in automaton.element.states for transition in state.transitions)
         yield from ((transition.guard, automaton.within, transition) for transition in transitions)
-    for condition, within in _remembered(instances):
-        yield condition, within, None
+    yield from _remembered(instances)
 
 
-def _remembered(instances: Instances) -> Iterator[tuple[ex.Expression | None, Instance | None]]:
+def commands(instances: Instances, required: Statement[robosc.CommunicationRequirement]) -> list[PortInstance]:
+    """Return the commands that a requirement restricts, each once."""
+    named = (instances.port(reference, required.within) for reference in required.element.target.communicationTypes)
+    return list(dict.fromkeys(port for port in named if port is not None))
+
+
+def _remembered(
+    instances: Instances,
+) -> Iterator[tuple[ex.Expression | None, Instance | None, PortInstance | None]]:
     """Iterate over the conditions of properties, requirements, assumptions, provided data and invariants.
 
-    They read only the robot's stored state, not the data of an event.
+    They read the robot's stored state. Those of requirements on commands also read the data of the command.
     """
     for claimed in instances.statements(robosc.Property):
-        yield claimed.element.condition, claimed.within
+        yield claimed.element.condition, claimed.within, None
         if isinstance(claimed.element, robosc.ReachabilityProperty):
-            yield claimed.element.premise, claimed.within
+            yield claimed.element.premise, claimed.within, None
     for goal in instances.statements(robosc.ReachabilityRequirement):
-        yield goal.element.condition, goal.within
-        yield goal.element.premise, goal.within
+        yield goal.element.condition, goal.within, None
+        yield goal.element.premise, goal.within, None
     for required in instances.statements(robosc.CommunicationRequirement):
-        yield required.element.condition, required.within
+        yield from ((required.element.condition, required.within, port) for port in commands(instances, required))
     for assumed in instances.statements(robosc.Assumption):
-        yield assumed.element.condition, assumed.within
+        yield assumed.element.condition, assumed.within, None
     for provided in (statement for port in instances.ports() for statement in instances.provide_statements(port)):
-        yield provided.element.condition, provided.within
+        yield provided.element.condition, provided.within, None
     for invariant in instances.statements(robosc.StateInvariant):
-        yield invariant.element.condition, invariant.within
+        yield invariant.element.condition, invariant.within, None
 
 
 def all_assignments(instances: Instances) -> Iterator[AssignmentPlace]:
@@ -199,36 +220,39 @@ def read_data(
     instances: Instances,
     expression: ex.Expression | None,
     within: Instance | None,
-    transition: robosc.Transition | robosc.RequirementTransition | None,
+    carrier: Carrier | None,
     variable: InstanceVariable | None = None,
 ) -> Iterator[InputRead]:
-    """Iterate over the reads of event data in an expanded expression of a transition.
+    """Iterate over the reads of event data in an expanded expression.
 
     `variable` is the variable that the expression is assigned to.
     """
-    reference, event = _event(transition)
-    port = None if reference is None else instances.port(reference, within)
-    if expression is None or port is None or event is None or event.is_sent:
+    port, event = _event(instances, within, carrier)
+    if expression is None or port is None or event is None:
         return
     bounds = None if variable is None else _bounds(variable.type)
     value = declared_type(data_type(port.communication, event))
     for part, carried in inputs_in(expression, port, event, bounds, is_condition=variable is None):
         access = next(filter(_reads_event, parts(part)))
         reason = NeedReason(access, within, variable)
-        yield InputRead(expression, part, carried, reason, value)
+        yield InputRead(expression, part, carried, reason, value, is_required=isinstance(carrier, PortInstance))
         if variable is not None and isinstance(carried, ComputedValue) and may_be_missing(carried):
             yield InputRead(expression, part, readable(carried), reason, value, is_readable=True)
 
 
 def _event(
-    transition: robosc.Transition | robosc.RequirementTransition | None,
-) -> tuple[robosc.CommunicationReference | None, PortEvent | None]:
-    """Return the communication and the event of a transition. None if it has none."""
-    match transition:
+    instances: Instances, within: Instance | None, carrier: Carrier | None
+) -> tuple[PortInstance | None, PortEvent | None]:
+    """Return the communication and the event of the data. None if there are none."""
+    match carrier:
+        case PortInstance():
+            return carrier, sending_event(carrier.communication)
         case robosc.ResultTransition():
-            return transition.communicationType, event_of(transition.communicationType, transition.resultType)
-        case robosc.RequirementTransition() if transition.event is not None:
-            return transition.event.communicationType, port_event_of(transition.event)
+            reference = carrier.communicationType
+            port = None if reference is None else instances.port(reference, within)
+            return port, event_of(reference, carrier.resultType)
+        case robosc.RequirementTransition() if carrier.event is not None:
+            return instances.port(carrier.event.communicationType, within), port_event_of(carrier.event)
     return None, None
 
 

@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from robosc.model import expression as ex
 from robosc.model import robosc as rsc
 from robosc.model import rosgraph, sct
-from robosc.model.semantics.communication import data_type, event, section_of, sent_type
+from robosc.model.semantics.communication import data_type, event, port_event_of, section_of, sent_type
 from robosc.model.semantics.naming import escape_keyword
 from robosc.model.semantics.operators import CONDITIONS, Operator, TypeRule, operator_of
-from robosc.model.semantics.walks import fold
+from robosc.model.semantics.walks import copy_tree, fold, parts
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -125,15 +125,15 @@ def declared_type(data_type: rsc.DataType | ex.Type | None) -> Type:
 
 
 def event_data_type(communication: rsc.CommunicationType | None, result_type: rsc.ResultType | None) -> Type | None:
-    """Return the type of the data that an event carries to the component, which `value` reads.
+    """Return the type of the data that an event carries, which `value` reads.
 
-    None for events without data: requests, errors and cancels. UNKNOWN if the communication has no such event (rule
-    `result-type`) or is unresolved.
+    None for events without data, such as cancels. UNKNOWN if the communication has no such event (rule `result-type`)
+    or is unresolved.
     """
     row = event(communication, result_type)
     if row is None:
         return UNKNOWN
-    return None if row.is_sent or not row.feature else declared_type(data_type(communication, row))
+    return declared_type(data_type(communication, row)) if row.feature else None
 
 
 def provided_data_type(communication: rsc.CommunicationType | None) -> Type:
@@ -160,17 +160,80 @@ def object_value_type(value: rsc.ObjectValue) -> Type:
 def value_type(element: ex.Located) -> Type | None:
     """Return the type of `value` at a place in the model. None if there is no `value`.
 
-    Inside an enum, `value` is the enum's source; inside a transition, it is the data of its event.
+    In the condition of a requirement on several commands, it is the type of the first one.
     """
-    around = element
+    return next(iter(value_types(element)), None)
+
+
+def value_types(element: ex.Located) -> Sequence[Type]:
+    """Return the types of `value` at a place in the model; none if there is no `value`.
+
+    Inside an enum, `value` is the enum's source. Inside a transition, it is the data of its event. In the condition of
+    a requirement, it is the data of each of its commands.
+    """
+    inside, around = None, element
     while around is not None:
-        if isinstance(around, rsc.EnumDataType):
-            return declared_type(around.type)
-        if isinstance(around, rsc.ResultTransition):
-            reference: rsc.CommunicationReference | None = around.communicationType
-            return event_data_type(reference.communicationType if reference else None, around.resultType)
-        around = around.eContainer()
-    return None
+        match around:
+            case rsc.EnumDataType():
+                return (declared_type(around.type),)
+            case rsc.ResultTransition():
+                if around.resultType == rsc.ResultType.request and inside is not around.guard:
+                    return ()
+                kind = event_data_type(_communication(around.communicationType), around.resultType)
+                return () if kind is None else (kind,)
+            case rsc.RequirementTransition():
+                named = around.event
+                row = None if named is None else port_event_of(named)
+                return (_sent(named.communicationType),) if row is not None and row.is_sent else ()
+            case rsc.CommunicationRequirement() if inside is around.condition and around.target is not None:
+                return tuple(dict.fromkeys(map(_sent, around.target.communicationTypes)))
+        inside, around = around, around.eContainer()
+    return ()
+
+
+def _communication(reference: rsc.CommunicationReference | None) -> rsc.CommunicationType | None:
+    return reference.communicationType if reference else None
+
+
+def _sent(reference: rsc.CommunicationReference | None) -> Type:
+    return provided_data_type(_communication(reference))
+
+
+def read_from(expression: ex.Expression, value: Type) -> ex.Expression:
+    """Return an expression that reads the same fields from data of the type `value`.
+
+    It is the expression itself if it reads that type already, else a copy. Fields that the type lacks stay as they are.
+    """
+    accesses = [part for part in parts(expression) if isinstance(part, rsc.Access) and part.value]
+    if all(_resolved(access, value) == [*map(_property_of, access.segments)] for access in accesses):
+        return expression
+    copy = copy_tree(expression)
+    for part in parts(copy):
+        if isinstance(part, rsc.Access) and part.value:
+            for segment, prop in zip(part.segments, _resolved(part, value), strict=True):
+                if isinstance(segment, rsc.PropertySegment) and prop is not None:
+                    segment.property = prop
+    return copy
+
+
+def _property_of(segment: rsc.AccessSegment) -> rsc.ObjectProperty | None:
+    return segment.property if isinstance(segment, rsc.PropertySegment) else None
+
+
+def _resolved(access: rsc.Access, value: Type) -> list[rsc.ObjectProperty | None]:
+    """Return the properties that an access reads from data of a type, by their names; None for an index."""
+    kind, resolved = value, list[rsc.ObjectProperty | None]()
+    for segment in access.segments:
+        original = _property_of(segment)
+        prop: rsc.ObjectProperty | None = None
+        if original is not None:
+            properties = kind.definition.properties if isinstance(kind, ObjectType) else ()
+            prop = next((other for other in properties if other.name == original.name), None)
+            kind = declared_type(prop.type if prop else None)
+        else:
+            kind = segment_type(kind, segment)
+        resolved.append(prop)
+    return resolved
 
 
 def is_number(kind: Type) -> bool:

@@ -35,6 +35,8 @@ from robosc.model.semantics.typing import (
     Type,
     declared_type,
     provided_data_type,
+    read_from,
+    value_types,
 )
 from robosc.model.semantics.typing import value_type as value_type_in
 
@@ -76,7 +78,7 @@ def types(base: rsc.Base) -> Iterator[Finding]:
 
 def _requirements(base: rsc.Base) -> Iterator[Finding]:
     for requirement in statements(rsc.CommunicationRequirement, base):
-        yield from _boolean(requirement.condition, "the condition of a requirement", _REQUIREMENT)
+        yield from _required(requirement)
     for invariant in statements(rsc.StateInvariant, base):
         yield from _boolean(invariant.condition, f"the condition after `{invariant.kind.name}`", _REQUIREMENT)
     for count in statements(rsc.CountRequirement, base):
@@ -93,8 +95,21 @@ def _requirements(base: rsc.Base) -> Iterator[Finding]:
     for automaton in statements(rsc.AutomatonRequirement, base):
         for transition in (transition for state in automaton.states for transition in state.transitions):
             has_reason = transition.event is not None and is_error(port_event_of(transition.event))
-            place = replace(_REQUIREMENT, has_reason=has_reason)
+            place = replace(_REQUIREMENT, value=value_type_in(transition), has_reason=has_reason)
             yield from _boolean(transition.guard, "the condition after `if`", place)
+
+
+def _required(requirement: rsc.CommunicationRequirement) -> Iterator[Finding]:
+    """Check a condition for the data of each command: first in the text itself, then in copies."""
+    condition, what = requirement.condition, "the condition of a requirement"
+    kinds = () if condition is None else value_types(condition)
+    yield from _boolean(condition, what, replace(_REQUIREMENT, value=next(iter(kinds), None)))
+    hint = "write one requirement for each type of data"
+    for kind in kinds[1:]:
+        check = ExpressionCheck(replace(_REQUIREMENT, value=kind))
+        check.expect(read_from(condition, kind), BOOLEAN, what)
+        for finding in check.findings[:1]:
+            yield replace(finding, element=condition, message=f"with data of type {kind}: {finding.message}", hint=hint)
 
 
 def _named(named: rsc.NamedExpression) -> Iterator[Finding]:
@@ -160,6 +175,8 @@ def _transition(transition: rsc.Transition) -> Iterator[Finding]:
         without = f"the event `{transition.resultType}` carries no data to a component"
         has_reason = transition.resultType == rsc.ResultType.error
         place = guarded = Place(value_type_in(transition), without, has_reason=has_reason)
+        if transition.guard is not None:
+            guarded = replace(place, value=value_type_in(transition.guard))
     if isinstance(transition, rsc.TimedTransition):
         place = _TIMED
         yield from _duration(transition.duration)
