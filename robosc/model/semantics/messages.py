@@ -69,6 +69,18 @@ def received_messages(
             yield action.interface, Section.RESULT, [end]
 
 
+def sent_messages(
+    graph: rosgraph.RosGraph,
+) -> Iterator[tuple[rosgraph.Interface, Section, rosgraph.Sending]]:
+    """Yield each command with data: its interface, the section, and its sending."""
+    for publisher in graph.publishers:
+        yield from ((publisher.interface, Section.MESSAGE, sending) for sending in publisher.sendings)
+    for service in graph.serviceClients:
+        yield service.interface, Section.REQUEST, service.request
+    for action in graph.actionClients:
+        yield action.interface, Section.GOAL, action.request
+
+
 def sections(graph: rosgraph.RosGraph) -> dict[str, tuple[str, str, Section]]:
     """Return package, type and section of each event with data, by the name of the event.
 
@@ -78,6 +90,11 @@ def sections(graph: rosgraph.RosGraph) -> dict[str, tuple[str, str, Section]]:
         event_name(reception.event): (interface.package, interface.type, section)
         for interface, section, several in received_messages(graph)
         for reception in several
+    }
+    known |= {
+        event_name(sending.event): (interface.package, interface.type, section)
+        for interface, section, sending in sent_messages(graph)
+        if sending.inputs
     }
     answers = {event_name(client.error.event): event_name(client.response.event) for client in graph.serviceClients}
     return {**{error: known[answer] for error, answer in answers.items()}, **known}

@@ -18,12 +18,12 @@ from robosc.model.reflection import tree
 from robosc.model.semantics.communication import happens_anyway
 from robosc.model.semantics.evaluation import as_double
 from robosc.model.semantics.failures import REASON, UNREADABLE, brings_data, is_reason, possible_reasons
-from robosc.model.semantics.messages import is_structured, receptions, source_of
+from robosc.model.semantics.messages import is_structured, receptions, sent_messages, source_of
 from robosc.model.semantics.operators import UnreadableError
 from robosc.model.semantics.roles import event_name, plant_of
 from robosc.model.semantics.walks import operands
 from robosc.run.runtime.core.event_log import nest
-from robosc.run.runtime.core.node_data import NodeData
+from robosc.run.runtime.core.node_data import NodeData, narrowed, within_range
 from robosc.run.simulation.unreadable import Unreadable, past_end
 from robosc.run.simulation.wire_fit import DIGITS, WireFit, in_short, place
 
@@ -120,7 +120,10 @@ class EventData:
         self._defaults = None if graph is None else WireFit(graph, types)
         self._node = None if graph is None else _JsonData(graph, engine)
         known = [] if graph is None else receptions(graph)
-        self._assignments = {assignment.input: assignment for reception in known for assignment in reception.inputs}
+        commands = [] if graph is None else [sending for _, _, sending in sent_messages(graph) if sending.inputs]
+        self._commands = {event_name(sending.event): sending for sending in commands}
+        handlers: list[rosgraph.Reception | rosgraph.Sending] = [*known, *commands]
+        self._assignments = {assignment.input: assignment for handler in handlers for assignment in handler.inputs}
         self._receptions = {event_name(reception.event): reception for reception in known}
         clients: list[rosgraph.ServiceClient | rosgraph.ActionClient] = []
         clients += [] if graph is None else [*graph.serviceClients, *graph.actionClients]
@@ -141,7 +144,7 @@ class EventData:
             self._node.reason = reason
         if data and not declared.inputs:
             return {}  # stored by the node, or unused
-        value = data.get("value", _ABSENT)
+        value = data["value"] if "value" in data else self._provided(event)
         values = {}
         for event_input in declared.inputs:
             domain = Domain(event_input.type)
@@ -158,6 +161,22 @@ class EventData:
             except ValueError as error:
                 raise DataError(f"{self._label(event_input, value)}: {error}") from None
         return values
+
+    def _provided(self, event: str) -> Any:
+        """Return the data that a `provide` statement gives a command in the present state."""
+        if event not in self._commands:
+            return _ABSENT
+        assert self._node is not None
+        alternatives = self._commands[event].alternatives
+        chosen = next((data for data in alternatives if self._node.is_in(data.location)), None)
+        fields: dict[tuple[str, ...], Any] = {}
+        for field in () if chosen is None else chosen.fields:
+            if field.condition is None or self._node.value(field.condition):
+                value = within_range(self._node.value(field.value), field.type)
+                wire = None if self._defaults is None else self._defaults.wire_type(event, tuple(field.path))
+                is_short = isinstance(wire, Basic) and wire.name == "float32"
+                fields[tuple(field.path)] = narrowed(value) if is_short and isinstance(value, float) else value
+        return nest(fields) if fields else _ABSENT
 
     def _label(self, event_input: sct.Input, data: Any = None) -> str:
         """Return the text of an input, or its place in the data of its event."""

@@ -186,11 +186,10 @@ class Replay:
         before = self.engine.state
         if event == REFUSE:
             return Moment(event, dict(data), before, before, line, refusal(self.engine, data["of"]))
-        inputs = self.simulation.data.inputs(event, data)
+        self.engine.set_inputs(event, self.simulation.data.inputs(event, data))
         by = self.engine.blocked_by(event) or self.simulation.data.unreadable(event, data)
         edges: tuple[sct.Edge, ...] = ()
         if by is None:
-            self.engine.set_inputs(event, inputs)
             edges = self._transitions.taken_transitions(event)
             self.timers.before(event)
             self.simulation.perform(event, data)

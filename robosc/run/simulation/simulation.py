@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from robosc.engine.state import State, Value
     from robosc.model import rosgraph
 
+#: Maximum number of draws of random data for a command, until some are allowed.
+_DRAWS = 100
 #: Lines of scripts beside events: the end of a period; the begin and end of a message with several events.
 TICK, BEGIN, END = "tick", "begin", "end"
 
@@ -117,6 +119,7 @@ class Simulation:
             arguments = data or {}
             return RequestResult(event, arguments, refusal(self.engine, arguments["of"]), whole_state(self.engine))
         inputs = self.data.inputs(event, data or {})
+        self.engine.set_inputs(event, inputs)
         before = self.engine.state
         by = self.engine.blocked_by(event) or self.data.unreadable(event, data or {})
         if by is None:
@@ -141,7 +144,11 @@ class Simulation:
         if not enabled:
             return None
         event = random.choice(enabled)
-        values = {event_input.name: _any(event_input.type, random) for event_input in self._inputs[event]}
+        for _ in range(_DRAWS):
+            values = {event_input.name: _any(event_input.type, random) for event_input in self._inputs[event]}
+            self.engine.set_inputs(event, values)
+            if self.engine.permits_inputs(event):
+                break
         return event, self.data.shape(event, self.data.fit_reason(event, values))
 
     def random_step(self, random: Random) -> RequestResult | None:
@@ -195,10 +202,19 @@ class LoopSimulation:
     ) -> None:
         """`types`: the definitions of ROS types, for fields missing in data; None: those of the environment."""
         self._happened: list[str] = []
-        hooks = Hooks(after=self._happened.append, livelock=lambda: self._happened.append("livelock"))
+        hooks = Hooks(self._set_data, self._happened.append, livelock=lambda: self._happened.append("livelock"))
         self._loop = ControlLoop(model, settings, hooks)
         self.data = EventData(self._loop.engine, graph, types)
+        self._commands = {
+            event.name for event in self._loop.engine.executed.events if event.role is Role.trigger and event.inputs
+        }
         self._in_batch = False
+
+    def _set_data(self, event: str) -> bool:
+        """Set the inputs of a command to the data that it sends. No event is withheld."""
+        if event in self._commands:
+            self._loop.engine.set_inputs(event, self.data.inputs(event, {}))
+        return True
 
     @property
     def events(self) -> list[str]:
