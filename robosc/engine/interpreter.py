@@ -120,15 +120,25 @@ class Engine:
         return frozenset(variable.variable or variable.plant for variable in variables)
 
     def blocked_by(self, event: str) -> Blocked | None:
-        """Return the cause that blocks the event in this state, with its inputs. None if nothing does."""
+        """Return the cause that blocks the event in this state, whatever its inputs. None if it is enabled."""
         if self.enabled(event):
-            return None if self.permits_inputs(event) else Blocked.REQUIREMENT
+            return None
         if event not in self._reasons:
             guard = self._by_name[event].guard
             parts = (guard.plants, guard.assumption, guard.requirement, guard.synthesis)
             conditions = zip(Blocked, parts, strict=True)
             self._reasons[event] = [(reason, self._compile(part)) for reason, part in conditions if part is not None]
         return next(reason for reason, holds in self._reasons[event] if not holds(self._cells, ()))
+
+    def inputs_blocked_by(self, event: str) -> Blocked | None:
+        """Return the cause that blocks an enabled command because of its present inputs. None if they are allowed."""
+        if self.permits_inputs(event):
+            return None
+        reasons = self._by_name[event].reasons
+        plants = (reason.condition for reason in reasons if reason.kind == engine.Origin.plants)
+        if any(condition is not None and self.condition(condition)() for condition in plants):
+            return Blocked.PLANT
+        return Blocked.REQUIREMENT if self.failing_requirements(event) else Blocked.SYNTHESIS
 
     def failing_requirements(self, event: str) -> list[sct.Requirement]:
         """Return the requirements on the event that forbid it in this state, independent of other causes."""

@@ -13,6 +13,7 @@ from robosc.model import sct
 from robosc.model.semantics.edges import edges_of
 from robosc.model.semantics.evaluation import evaluate
 from robosc.model.semantics.roles import event_name
+from robosc.synthesis.relation import reads_inputs
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -63,7 +64,7 @@ def goals(loop: ControlLoop) -> list[Goal]:
 
 
 def causes(model: sct.SupervisoryControlModel, event: sct.Event) -> list[ex.Expression]:
-    """Return the conditions that the requirements on an event join by `and`; none if there is only one."""
+    """Return the conditions on the state that the requirements on an event join by `and`; none if there is only one."""
     supervisor = model.supervisor
     required = [guard.requirement for guard in supervisor.guards if guard.event is event] if supervisor else []
     pending, conditions = [condition for condition in required if condition is not None], []
@@ -71,7 +72,7 @@ def causes(model: sct.SupervisoryControlModel, event: sct.Event) -> list[ex.Expr
         condition = pending.pop()
         if isinstance(condition, ex.Conjunction):
             pending += (condition.right, condition.left)
-        else:
+        elif not reads_inputs(condition):
             conditions.append(condition)
     return conditions if len(conditions) > 1 else []
 

@@ -88,6 +88,8 @@ class Guide:
         if not event.inputs:
             return condition
         levels = [level for event_input in event.inputs for level in self._encoding.layout.domains[event_input].levels]
+        if event.controllable:  # The data depend on the state of the node, which the plan does not have.
+            return (condition & self._encoding.whole(event.inputs)).exists(self._encoding.diagrams.cube(levels))
         choices = self._encoding.diagrams.any_of(
             self._encoding.diagrams.all_of(
                 self._encoding.has_code(event_input, _code(event_input, inputs[event_input.name]))

@@ -5,16 +5,18 @@ from __future__ import annotations
 import random
 from collections import Counter
 from dataclasses import dataclass, field
-from functools import cached_property, reduce
+from functools import cached_property, partial, reduce
 from operator import or_
 from typing import TYPE_CHECKING, NamedTuple
 
 from robosc.engine import ControlLoop, Hooks
 from robosc.model import sct
+from robosc.model.engine import Role
 from robosc.model.semantics.roles import event_name
 from robosc.run.node_tests.coverage import Goal, Watcher, goals
 from robosc.run.node_tests.guide import Guide, Way
 from robosc.run.node_tests.steps import WAIT, Place, Stimulus, TourStep
+from robosc.run.simulation.data import EventData
 from robosc.synthesis import use_encoding
 
 if TYPE_CHECKING:
@@ -24,6 +26,7 @@ if TYPE_CHECKING:
     from robosc.engine import Settings
     from robosc.engine.control_loop import SavedLoop
     from robosc.engine.state import Value
+    from robosc.model import rosgraph
     from robosc.synthesis.encoding import Encoding
 
 #: Maximum number of steps to explore; below it, all places are explored.
@@ -61,12 +64,19 @@ class Plan:
     #: Duration of a period, and of the pause after a failure, in milliseconds.
     period: int
     pause: int
+    graph: rosgraph.RosGraph
     _known: dict[Place, _Known] = field(default_factory=dict)
     _ways_from: dict[Place, dict[Place, list[_Way]]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self._loop = ControlLoop(self.model, self.settings, Hooks(self._before))
         self._watcher = Watcher(self._loop)
+        data = EventData(self._loop.engine, self.graph)
+        self._inputs = {
+            event.name: partial(data.inputs, event.name, {})
+            for event in self._loop.engine.executed.events
+            if event.role is Role.trigger and event.inputs
+        }
         #: All coverage goals.
         self.goals = goals(self._loop)
         #: Bit of each goal.
@@ -89,6 +99,8 @@ class Plan:
     def _before(self, event: str) -> bool:
         if event in self._resets and self._pauses:
             return False
+        if event in self._inputs:
+            self._loop.engine.set_inputs(event, self._inputs[event]())
         self._shown |= self._mask(self._watcher.before_event(event))
         return True
 

@@ -116,6 +116,7 @@ class Tour(Drive):
             _LONGEST * self.parameters["period_ms"],
             self.parameters["period_ms"],
             self.parameters.get("retry_ms", 0),
+            graph,
         )
         #: Planned parts of all runs, in order.
         self.planned: list[_Planned] = []

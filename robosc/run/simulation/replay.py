@@ -187,7 +187,11 @@ class Replay:
         if event == REFUSE:
             return Moment(event, dict(data), before, before, line, refusal(self.engine, data["of"]))
         self.engine.set_inputs(event, self.simulation.data.inputs(event, data))
-        by = self.engine.blocked_by(event) or self.simulation.data.unreadable(event, data)
+        by = (
+            self.engine.blocked_by(event)
+            or self.engine.inputs_blocked_by(event)
+            or self.simulation.data.unreadable(event, data)
+        )
         edges: tuple[sct.Edge, ...] = ()
         if by is None:
             edges = self._transitions.taken_transitions(event)

@@ -121,7 +121,11 @@ class Simulation:
         inputs = self.data.inputs(event, data or {})
         self.engine.set_inputs(event, inputs)
         before = self.engine.state
-        by = self.engine.blocked_by(event) or self.data.unreadable(event, data or {})
+        by = (
+            self.engine.blocked_by(event)
+            or self.engine.inputs_blocked_by(event)
+            or self.data.unreadable(event, data or {})
+        )
         if by is None:
             self.engine.perform(event, inputs)
         violated = violated_names(self.engine, event) if by is Blocked.ASSUMPTION else ()
