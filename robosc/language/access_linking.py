@@ -72,7 +72,7 @@ class AccessLinker(NameFindings):
             self._qualified(access, templates[first.text], names["item"])
             return
         elif qualifies and first.text in components and self.around(access, rsc.EnumDataType) is None:
-            self._indexed(components[first.text], access.index, first, names["item"])
+            self._indexed(access, components[first.text], first, names["item"])
             self._qualified(access, components[first.text], names["item"])
             return
         elif qualifies and first.text in (automata := self.automata(access)):
@@ -135,8 +135,15 @@ class AccessLinker(NameFindings):
             message = f"requirement `{name.text}` has no value of its own, expected one of its states"
             self._report(name, message, f"write {states} behind the brackets")
 
-    def _indexed(self, component: rsc.Component, index: ex.Expression | None, name: Name, member: Name) -> None:
+    def _indexed(
+        self, element: rsc.Access | rsc.CommunicationReference, component: rsc.Component, name: Name, member: Name
+    ) -> None:
         """Report a fleet without an index, and an index between the name of another component and its member."""
+        index = element.index
+        stated = self._nearest(element, rsc.StatedDefinition)
+        template = None if stated is None else self.file.references.get(stated, {}).get("template")
+        if template is not None and stated is not None and stated.template is None and template.text == name.text:
+            return  # The name behind `each` is reported.
         if component.first is not None and index is None:
             choice = first_instance(component)
             hint = Repair(f"write `{choice}`", choices=(choice,))
@@ -227,10 +234,10 @@ class AccessLinker(NameFindings):
         if access.segments or not types or self._is_declared(access, type_name.text):
             return False
         known = constants_of(types, type_name.text, self.interfaces)
-        by_package = known.get(name.text, {})
-        values = {value for values in by_package.values() for value in values}
-        if len(by_package) > 1:
-            types_having = enumeration(f"`{package}/{type_name.text}`" for package in by_package)
+        by_type = known.get(name.text, {})
+        values = {value for values in by_type.values() for value in values}
+        if len(by_type) > 1:
+            types_having = enumeration(f"`{whole_name}`" for whole_name in by_type)
             self._report(name, f"`{name.text}` is a constant of {types_having}", _OWN_CONSTANT)
         elif not values:
             self._missing(name, f"the ROS type `{type_name.text}` has no constant", known)

@@ -8,13 +8,12 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from robosc.base.diagnostics import Related, Repair
 from robosc.base.interruption import checkpoint
-from robosc.base.ros_types.wire import FOLDERS
 from robosc.language.access_linking import OWN_MEMBERS, AccessLinker
 from robosc.language.failures import expects_failure
 from robosc.language.interface_types import declare, link_interface
 from robosc.language.name_findings import IMPORT, RULE, first_few, first_instance
 from robosc.language.scopes import File, NameKind, Scope, by_name
-from robosc.language.spellings import NEGATION, folder
+from robosc.language.spellings import NEGATION, WRONG_FOLDER, wrong_folder
 from robosc.language.syntax_messages import BASIC_TYPES, did_you_mean
 from robosc.model import expression as ex
 from robosc.model import robosc as rsc
@@ -30,7 +29,6 @@ if TYPE_CHECKING:
     from robosc.base.diagnostics import Diagnostic
     from robosc.base.ros_types import RosTypes
     from robosc.language.builder import Name
-    from robosc.model.places import Place
 
 _Element = TypeVar("_Element")
 #: Hint for a call of an unknown function.
@@ -150,13 +148,13 @@ class Linker(AccessLinker):
                 name = names["interface"]
                 element.interface = self._definition(rsc.Interface, "interface", NameKind.INTERFACE, name)
                 if element.interface is not None:
-                    self._folder(element.interface.source, type(element).__name__.lower(), name)
+                    self._folder(element.interface, type(element).__name__.lower(), name)
             case rsc.InterfaceTypeReference():
                 unknown = declare(element, self.interfaces)
                 if unknown is not None:
                     self._report(names["type"], *unknown)
                 else:
-                    self._folder(element.source, section_of(element).kind, names["type"])
+                    self._folder(element, section_of(element).kind, names["type"])
             case rsc.ErrorReason():
                 assert self.file.predefined is not None
                 element.enumeration = self.file.predefined.declared[rsc.ComplexDataType][FAILURE]
@@ -166,18 +164,13 @@ class Linker(AccessLinker):
                 if definition is not None:
                     element.type = definition
 
-    def _folder(self, source: Place | None, kind: str, name: Name) -> None:
+    def _folder(self, element: ex.Located, kind: str, name: Name) -> None:
         """Report a folder in the name of a ROS type, such as `msg`, that is not the one of its kind."""
-        if source is None:
-            return
-        text, span = self.file.text, source.span
-        if source.file is not text.source_file and source.file is not None:
-            text = source.file.parsed.text
-        start, end = text.offset(span.line, span.column), text.offset(span.end_line, span.end_column)
-        written = folder(text.tokens, start, end)
-        if written is not None and written.text != FOLDERS[kind]:
-            message = f"`{written.text}` holds no types of the kind {kind}, expected `{FOLDERS[kind]}`"
-            self._report(name, message, "leave the folder out, or name another type")
+        file = None if element.source is None else element.source.file
+        text = self.file.text if file is None or file.parsed is None else file.parsed.text
+        message = None if element.source is None else wrong_folder(text, element, kind)
+        if message is not None:
+            self._report(name, message, WRONG_FOLDER)
 
     def _use(self, element: ex.Located, names: Mapping[str, Name]) -> None:
         match element:
@@ -324,7 +317,7 @@ class Linker(AccessLinker):
             component = self._component(reference, names["component"])
             if component is not None:
                 reference.component = component
-                self._indexed(component, reference.index, names["component"], name)
+                self._indexed(reference, component, names["component"], name)
                 reference.communicationType = self._communication_of(component, name)
             return
         port = self._bare_communication(reference, name)

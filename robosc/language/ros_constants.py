@@ -28,15 +28,16 @@ def used_types(file: File, name: str) -> set[tuple[str, str]]:
 
 
 def constants_of(types: set[tuple[str, str]], name: str, interfaces: RosTypes) -> dict[str, dict[str, set[Value]]]:
-    """Return the constants of types of a name: for each constant, the values in each package.
+    """Return the constants of types of a name: for each constant, the values in each type.
 
-    A constant with several values in a package differs between the ROS versions.
+    A constant with several values in a type differs between the ROS versions.
     """
     known: dict[str, dict[str, set[Value]]] = {}
     for package, kind in sorted(types):
         for constants in interfaces.constants(package, name, kind):
             for constant, value in constants.items():
-                known.setdefault(constant, {}).setdefault(package, set()).add(value)
+                whole_name = f"{package}/{FOLDERS[kind]}/{name}"
+                known.setdefault(constant, {}).setdefault(whole_name, set()).add(value)
     return known
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from robosc.base.ros_types.wire import FOLDERS
 from robosc.language.grammar import Failure, first, is_reserved, parse
-from robosc.language.tokens import Kind, Token
+from robosc.language.tokens import Kind
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -17,7 +17,10 @@ if TYPE_CHECKING:
     from robosc.language.grammar import Node
     from robosc.language.text import Text
     from robosc.language.tokens import Tokens
+    from robosc.model import expression as ex
 
+#: Hint at a folder of another kind.
+WRONG_FOLDER = "leave the folder out, or name another type"
 #: Word for `!`.
 NEGATION = "not"
 _DECLARING = (
@@ -50,32 +53,49 @@ def usual_spelling(text: Text) -> str:
     return "".join(content)
 
 
-def folder(tokens: Tokens, start: int, end: int) -> Token | None:
-    """Return the folder in the name of a ROS type between two offsets, such as `msg`; None if the name has none."""
-    at = tokens.index_at(start)
-    while tokens[at].end <= end and at < len(tokens):
-        if _is_folder(tokens, at):
-            return tokens[at]
+def wrong_folder(text: Text, element: ex.Located, kind: str) -> str | None:
+    """Return a message if the text of a ROS type's name has the folder of another kind, such as `srv` for a message.
+
+    `element` is a reference to a type, or an interface. `kind` is `message`, `service` or `action`.
+    """
+    assert element.source is not None
+    span = element.source.span
+    end = text.offset(span.end_line, span.end_column)
+    at = text.tokens.index_at(text.offset(span.line, span.column))
+    while text.tokens[at].end <= end and at < len(text.tokens):
+        written = text.tokens[at].text
+        if _is_folder(text.tokens, at) and written != FOLDERS[kind]:
+            return f"`{written}` holds no types of the kind {kind}, expected `{FOLDERS[kind]}`"
         at += 1
     return None
 
 
 def _other_spellings(tokens: Tokens) -> Iterator[tuple[int, int, str]]:
     """Yield the places of other spellings, and their replacements."""
-    negations = [index for index, token in enumerate(tokens) if token.text == NEGATION]
+    negations = [
+        index for index, token in enumerate(tokens) if token.text == NEGATION and not _is_member(tokens, index)
+    ]
     if all(_is_negation(tokens, index) for index in negations):
         yield from ((tokens[index].start, tokens[index].end, "!") for index in negations)
     declared = {token.text for index, token in enumerate(tokens) if tokens[index - 1].text in _DECLARING}
     declared |= {token.text for index, token in enumerate(tokens) if tokens[index + 1].text == ":"}
     for index, token in enumerate(tokens):
-        if token.text not in declared and _is_folder(tokens, index):
+        # A quotient such as `length / msg / count` has declared names on both sides.
+        is_quotient = token.text in declared and tokens[index - 2].text in declared
+        if not is_quotient and _is_folder(tokens, index):
             yield token.start, tokens[index + 1].end, ""
+
+
+def _is_member(tokens: Tokens, index: int) -> bool:
+    """Return whether a word is the name of a property: no expression can mean it without a point before it."""
+    before, after = tokens[index - 1], tokens[index + 1]
+    return before.text == "." or (after.text == ":" and before.text not in (*_DECLARING, "(", ","))
 
 
 def _is_negation(tokens: Tokens, index: int) -> bool:
     """Return whether an operand, and nothing that makes it a name, is beside a `not`."""
     before, after = tokens[index - 1], tokens[index + 1]
-    if before.text in (*_DECLARING, ".") or tokens[index].is_name:
+    if before.text in _DECLARING or tokens[index].is_name:
         return False
     starts_operand = not is_reserved(after.text) or after.text in first("Expression")
     is_word = after.kind is Kind.WORD and starts_operand

@@ -372,8 +372,8 @@ def _statement_hint(tokens: Tokens, index: int, expectations: Sequence[str], blo
         return Repair(f"write `{_SPELLED[token.text]}`", _SPELLED[token.text])
     if token.text == "[" and before.is_keyword("integer", "double"):
         return _range_hint(tokens, index)
-    if token.text == "if" and "on" in expectations:
-        return _condition_first(tokens, index)
+    if token.text == "if" and (moved := _condition_first(tokens, index, expectations, starter)) is not None:
+        return moved
     if starter.is_keyword("after"):
         return _timed_hint(token, before, expectations)
     if starter.is_keyword("incoming", "outgoing", "service", "action"):
@@ -399,23 +399,53 @@ def _range_hint(tokens: Tokens, index: int) -> Repair:
     return Repair("write parentheses around the range", "(" if is_closed else None, elsewhere=ends)
 
 
-def _condition_first(tokens: Tokens, index: int) -> Repair:
-    """Return the hint for a condition before `on`, which follows the event."""
+def _condition_first(tokens: Tokens, index: int, expectations: Collection[str], starter: Token) -> Repair | None:
+    """Return the hint for a condition before `on`, which follows the event; None if a transition cannot begin here."""
+    is_next = "end" in expectations and starter.is_keyword("on", "transition", "after")
+    if "on" not in expectations and not is_next:
+        return None
     hint_text = "write the condition after the event, as in `on … if … do … goto …`"
     event = index + 1
     while event < len(tokens) and not tokens[event].is_keyword("on", "{", "}", "goto"):
         event += 1
-    if not tokens[event].is_keyword("on") or tokens.has_comment(tokens[index].start, tokens[event].start):
+    if not tokens[event].is_keyword("on"):
+        return None if is_next else Repair(hint_text)
+    if tokens.has_comment(tokens[index].start, tokens[event].start):
         return Repair(hint_text)
-    name = event + 3
-    while tokens[name + 1].text == ".":
-        name += 2
-    condition = " ".join(tokens[at].text for at in range(index, event))
+    name = tokens[_reference_end(tokens, event + 3)]
     moved = (
         (tokens[index].start, tokens[event].start, ""),
-        (tokens[name].end, tokens[name].end, f" {condition}"),
+        (name.end, name.end, f" {_written(tokens, index, event)}"),
     )
     return Repair(hint_text, elsewhere=moved, is_offered=True)
+
+
+def _written(tokens: Tokens, first: int, after: int) -> str:
+    """Return a range of tokens as the text has it, with one blank in place of several."""
+    parts = [tokens[first].text]
+    for at in range(first + 1, after):
+        parts += [" "] if tokens[at].start > tokens[at - 1].end else []
+        parts.append(tokens[at].text)
+    return "".join(parts)
+
+
+def _reference_end(tokens: Tokens, at: int) -> int:
+    """Return the index of the last token of a reference, such as `Cell[1].enter`, that begins at an index."""
+    while tokens[at + 1].text in {".", "["}:
+        if tokens[at + 1].text == ".":
+            at += 2
+        else:
+            at = next((end for end in range(at + 2, len(tokens)) if tokens[end].text == "]"), len(tokens) - 1)
+    return at
+
+
+def _reference_start(tokens: Tokens, at: int) -> int:
+    """Return the index of the first token of a reference that ends at an index."""
+    while tokens[at - 1].text == ".":
+        at -= 2
+        if tokens[at].text == "]":
+            at = next((start for start in range(at - 1, 0, -1) if tokens[start].text == "["), 1) - 1
+    return at
 
 
 def _set_hint(tokens: Tokens, index: int, block: Block) -> Repair | None:
@@ -423,10 +453,8 @@ def _set_hint(tokens: Tokens, index: int, block: Block) -> Repair | None:
     needs = next((at for at in range(index, block.after) if tokens[at].is_keyword("needs")), None)
     if tokens[index].text != "," or needs is None:
         return None
-    start = index - 1
-    while tokens[start - 1].text == ".":
-        start -= 2
-    around = ((tokens[start].start, tokens[start].start, "{ "), (tokens[needs - 1].end, tokens[needs - 1].end, " }"))
+    start = tokens[_reference_start(tokens, index - 1)].start
+    around = ((start, start, "{ "), (tokens[needs - 1].end, tokens[needs - 1].end, " }"))
     return Repair("write braces around several communications", elsewhere=around)
 
 

@@ -49,7 +49,9 @@ def package(tmp_path: Path) -> Path:
     folder = tmp_path / "cart_msgs"
     for path, text in {
         "msg/Mode.msg": "int8 BACK=-3\nfloat32 HALF=0.5\nstring NAME=cart\nbool ON=true\nint8 mode\n",
-        "srv/Ask.srv": "int8 FIRST=1\nint8 asked\n---\nint8 SECOND=2\nint8 answer\n",
+        "msg/Ask.msg": "int8 FIRST=5\nint8 asked\n",
+        "srv/Ask.srv": "int8 FIRST=1\nint8 asked\n---\nint8 answer\n",
+        "srv/Find.srv": "int8 FIRST=1\nint8 asked\n---\nint8 SECOND=2\nint8 answer\n",
         "msg/BatteryState.msg": "uint8 POWER_SUPPLY_STATUS_FULL=9\nuint8 OWN=7\nuint8 status\n",
     }.items():
         (folder / path).parent.mkdir(parents=True, exist_ok=True)
@@ -77,10 +79,14 @@ def test_constants_of_each_type(package: Path, constant: str, text: str) -> None
 
 
 def test_constants_of_all_sections_of_an_interface(package: Path) -> None:
-    content = robot(definitions="interface ask use Ask from cart_msgs condition c = Ask.FIRST < Ask.SECOND")
+    content = robot(definitions="interface ask use Find from cart_msgs condition c = Find.FIRST < Find.SECOND")
     found = reading(content, RosTypes([package]))
     assert found.findings == []
     assert RoboscPrinter()(found.base.definitions[1].value) == "1 < 2"
+    content = robot(definitions="interface ask use Ask from cart_msgs condition c = Ask.FIRST < 2")
+    assert faults(content, RosTypes([package])) == [
+        ("unresolved-reference", "`FIRST` is a constant of `cart_msgs/msg/Ask` or `cart_msgs/srv/Ask`")
+    ]
 
 
 def test_an_unknown_constant_is_reported() -> None:
@@ -95,10 +101,11 @@ def test_a_type_that_the_text_does_not_use_has_no_constants() -> None:
 
 def test_a_constant_of_two_types_is_ambiguous(package: Path) -> None:
     content = robot(type_="cart_msgs/BatteryState")
+    types = "`cart_msgs/msg/BatteryState`", "`sensor_msgs/msg/BatteryState`"
     assert faults(content, RosTypes([package])) == [
         (
             "unresolved-reference",
-            "`POWER_SUPPLY_STATUS_FULL` is a constant of `cart_msgs/BatteryState` or `sensor_msgs/BatteryState`",
+            f"`POWER_SUPPLY_STATUS_FULL` is a constant of {' or '.join(types)}",
         )
     ]
     assert faults(robot("BatteryState.OWN", type_="cart_msgs/BatteryState"), RosTypes([package])) == []

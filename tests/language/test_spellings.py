@@ -169,3 +169,26 @@ def test_the_editor_formats_other_spellings() -> None:
         pieces += [content[behind:start], new]
         behind = end
     assert "".join([*pieces, content[behind:]]) == formatted(content)
+
+
+@pytest.mark.parametrize("place", ["object O { NAME: string }", "object O { a: string NAME: string }"])
+@pytest.mark.parametrize("word", ["not", "msg"])
+def test_a_property_is_no_name_in_an_expression(place: str, word: str) -> None:
+    content = gate("not Gate.near", f"datatype {place.replace('NAME', word)}", "std_msgs/msg/Bool")
+    assert messages(content) == []
+    assert "!Gate.near" in formatted(content)
+    assert "std_msgs/Bool" in formatted(content)
+
+
+@pytest.mark.parametrize(
+    ("definitions", "type_", "link"),
+    [
+        ("", "std_msgs/srv/Bool", ""),
+        ("interface ask use std_srvs/msg/Trigger", "boolean", "links ask"),
+    ],
+)
+def test_format_keeps_the_wrong_folder_of_a_ros_type(definitions: str, type_: str, link: str) -> None:
+    """Without the folder the text would be correct, and mean another type."""
+    text, findings = format_text(Text("gate.rscd", gate(definitions=definitions, type_=type_, link=link)))
+    assert text is None
+    assert [finding.hint for finding in findings] == ["leave the folder out, or name another type"]

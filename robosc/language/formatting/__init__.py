@@ -10,10 +10,14 @@ from robosc.language.formatting.documents import render
 from robosc.language.formatting.layout import layout
 from robosc.language.grammar import Failure
 from robosc.language.recovery import recover
-from robosc.language.spellings import parse_text
+from robosc.language.spellings import WRONG_FOLDER, parse_text, wrong_folder
 from robosc.language.tokens import Tokens, too_complex
+from robosc.model import robosc as rsc
+from robosc.model.semantics.communication import section_of
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from robosc.base.diagnostics import Diagnostic
     from robosc.language.text import Text
 
@@ -36,12 +40,30 @@ def _formatted(text: Text) -> tuple[str | None, str, list[Diagnostic]]:
         return None, content, recover(text).findings
     builder = Builder(text)
     builder.build(tree)
-    if builder.findings:
-        return None, content, builder.findings
+    findings = [*builder.findings, *_wrong_folders(text, builder)]
+    if findings:
+        return None, content, findings
     formatted = render(layout(content, tree))
     if [word.text for word in Tokens(content)] != [word.text for word in Tokens(formatted)]:
         raise AssertionError(f"{text.file}: the layout changed the words")
     return formatted, content, []
+
+
+def _wrong_folders(text: Text, builder: Builder) -> Iterator[Diagnostic]:
+    """Yield a finding for each folder in the name of a ROS type without which the text would be correct."""
+    interfaces = {element.name: element for element in builder.declared if isinstance(element, rsc.Interface)}
+    for element, names in builder.references.items():
+        kind, named = type(element).__name__.lower(), element
+        if isinstance(element, rsc.InterfaceTypeReference):
+            kind = section_of(element).kind
+        elif isinstance(element, rsc.CommunicationType) and names["interface"].text in interfaces:
+            named = interfaces[names["interface"].text]
+        else:
+            continue
+        message = wrong_folder(text, named, kind)
+        if message is not None:
+            name = next(iter(names.values()))
+            yield text.error("syntax", name.start, name.end, message, WRONG_FOLDER)
 
 
 def format_edits(text: Text, start: int = 0, end: int | None = None) -> list[tuple[int, int, str]]:

@@ -338,6 +338,30 @@ def test_a_word_or_symbol_with_one_meaning_is_mended(old: str, new: str) -> None
     assert fixed(base.replace(old, new)) == base.replace(old, mended)
 
 
+def test_edits_beside_instances_of_fleets() -> None:
+    fleet = """robot R {
+  component Station(ns: string) {
+    incoming message enter with identifier: ns + "/enter", type: none
+    outgoing message done with identifier: ns + "/done", type: none
+    outgoing message more with identifier: ns + "/more", type: none
+    behaviour {
+      initial marked state s {
+        on response from done goto t
+        on response from more if Cell[1].t goto t
+      }
+      state t { on response from done goto s }
+    }
+  }
+  component Cell[1..2] is Station("/cell" + text(number))
+  requirement { Cell[1].enter, Cell[2].enter } needs Cell[1].s
+}
+"""
+    assert fixed(fleet.replace("{ Cell[1].enter, Cell[2].enter }", "Cell[1].enter, Cell[2].enter")) == fleet
+    found = checked(fleet.replace("on response from more if Cell[1].t", "if Cell[1].t on response from more"))
+    ways = [way for finding in found.findings for way in finding.alternatives if way.title == CONDITION]
+    assert [found.reading.file.text.after(way.edits) for way in ways] == [fleet]
+
+
 def test_an_arrow_is_no_implication_where_a_state_may_follow() -> None:
     content = ROBOT.replace("goto moving", "if true -> moving")
     (finding,) = [finding for finding in checked(content).findings if finding.rule == "syntax"]
