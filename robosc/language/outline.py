@@ -217,7 +217,7 @@ class Outline:
                 self._skip(levels)
                 continue
             # A property without braces: the opening brace is missing, and its closing brace follows.
-            unopened = unopened or (starter == "provide" and self._tokens[self._at + 1].is_keyword(":"))
+            unopened = unopened or (starter in {"provide", "limit"} and self._tokens[self._at + 1].is_keyword(":"))
             self._at += 1
         if starter is None and level.starters:
             # The contents of an unknown item cannot be checked.

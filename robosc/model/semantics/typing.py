@@ -150,7 +150,7 @@ def object_value_type(value: rsc.ObjectValue) -> Type:
     around = value.eContainer()
     while isinstance(around, ex.Conditional):
         around = around.eContainer()
-    if isinstance(around, rsc.ProvideStatement):
+    if isinstance(around, rsc.DataStatement):
         reference = around.communicationType
         return provided_data_type(reference.communicationType if reference else None)
     is_property = isinstance(around, rsc.ObjectPropertyValue) and around.property
@@ -160,7 +160,8 @@ def object_value_type(value: rsc.ObjectValue) -> Type:
 def value_type(element: ex.Located) -> Type | None:
     """Return the type of `value` at a place in the model. None if there is no `value`.
 
-    Inside an enum, `value` is the enum's source; inside a transition, it is the data of its event.
+    Inside an enum, `value` is the enum's source. Inside a transition it is the data of its event, inside a limit the
+    data of its message.
     """
     around = element
     while around is not None:
@@ -169,6 +170,9 @@ def value_type(element: ex.Located) -> Type | None:
         if isinstance(around, rsc.ResultTransition):
             reference: rsc.CommunicationReference | None = around.communicationType
             return event_data_type(reference.communicationType if reference else None, around.resultType)
+        if isinstance(around, rsc.LimitStatement):
+            reference = around.communicationType
+            return provided_data_type(reference.communicationType if reference else None)
         around = around.eContainer()
     return None
 
