@@ -49,12 +49,12 @@ class Composer:
         fields hold them. Raises NotFiniteError or UnreadableError if it can't be sent.
         """
         message = self.default(sending, interface, section, frame)
-        fields: dict[tuple[str, ...], Json] = {}
+        fields: dict[Path, Json] = {}
         alternatives = sending.alternatives
         chosen = next((data for data in alternatives if self.data.is_in(data.location)), None)
         if chosen is not None:
-            fields |= self._assign(chosen.fields, message, None)
-        fields |= self._limit(sending, message)
+            self._assign(chosen.fields, message, None, fields)
+        self._limit(sending, message, fields)
         if not alternatives and not sending.limits:
             return message, None
         return message, {"value": fields["data",] if list(fields) == [("data",)] else nest(fields)}
@@ -66,24 +66,26 @@ class Composer:
         """
         if sending.limits:
             message = deepcopy(message)
-            self._limit(sending, message)
+            self._limit(sending, message, {})
         return message
 
-    def _limit(self, sending: rosgraph.Sending, message: Message) -> dict[tuple[str, ...], Json]:
-        fields: dict[tuple[str, ...], Json] = {}
+    def _limit(self, sending: rosgraph.Sending, message: Message, fields: dict[Path, Json]) -> None:
         if sending not in self._doubles:
             self._doubles[sending] = doubles_read(sending)
         for path in self._doubles[sending]:
             require_finite(message, path)
         for limit in sending.limits:
             if limit.condition is None or self.data.value(limit.condition, message):
-                fields |= self._assign(limit.fields, message, deepcopy(message))
-        return fields
+                self._assign(limit.fields, message, deepcopy(message), fields)
 
     def _assign(
-        self, assignments: Sequence[rosgraph.FieldAssignment], message: Message, before: Message
-    ) -> dict[tuple[str, ...], Json]:
-        """Change fields of a message, and return their values by path. Objects are left out.
+        self,
+        assignments: Sequence[rosgraph.FieldAssignment],
+        message: Message,
+        before: Message,
+        fields: dict[Path, Json],
+    ) -> None:
+        """Change fields of a message and note their values by path, except those of objects.
 
         `before` is the data that the values may read.
         """
@@ -93,10 +95,11 @@ class Composer:
             if assigned.condition is None or self.data.value(assigned.condition, before)
         ]
         values = [within_range(self.data.value(assigned.value, before), assigned.type) for assigned in chosen]
-        fields: dict[tuple[str, ...], Json] = {}
         for assigned, value in zip(chosen, values, strict=True):
+            path = tuple(assigned.path)
             if isinstance(assigned.value, rosgraph.WireAccess) and holds_objects(assigned.type):
-                hand_on(self.port, message, assigned.path, value)
+                hand_on(self.port, message, path, value)
+                for inside in [known for known in fields if known[: len(path)] == path]:
+                    del fields[inside]
             else:
-                fields[tuple(assigned.path)] = fill(self.port, message, assigned.path, value)
-        return fields
+                fields[path] = fill(self.port, message, path, value)

@@ -12,8 +12,8 @@ namespace robosc {
 inline namespace ROBOSC_VERSION {
 
 /// The causes of a blocked command. Only the first kind that has any is reported: another execution that has not ended
-/// (busy), violated assumptions, data that cannot be sent, failed requirements, states without a transition for the command, or else consequences
-/// that synthesis prevents.
+/// (busy), violated assumptions, data that cannot be sent, failed requirements, states without a transition for the
+/// command, or else consequences that synthesis prevents.
 class BlockReasons {
  public:
   static BlockReasons busy() {

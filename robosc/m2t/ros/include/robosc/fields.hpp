@@ -64,11 +64,14 @@ class FieldWriter {
     note(path, list);
   }
 
-  /// Sets a field, or the whole data, to received data. Records no JSON.
+  /// Sets a field, or the whole data if the path is empty, to received data. Records no JSON.
   template <typename Field, typename Data>
   void hand_on(const char* path, Field& field, const Data& data) {
     store(field, data);
-    if (!all_finite(field) && fault_ == nullptr) fault_ = path;
+    if (!all_finite(field) && fault_ == nullptr) fault_ = *path == '\0' ? "data" : path;
+    const std::string inside = *path == '\0' ? "" : std::string(path) + '.';
+    auto noted = fields_.lower_bound(inside);
+    while (noted != fields_.end() && noted->first.compare(0, inside.size(), inside) == 0) noted = fields_.erase(noted);
   }
 
   template <typename Field, typename Value>
