@@ -329,6 +329,8 @@ def _fits(reference: rsc.CommunicationReference, communication: Any) -> bool:
             return str(user.resultType) in event_names(communication)
         case rsc.ProvideStatement():
             return sent_type(communication) is not None
+        case rsc.LimitStatement():
+            return isinstance(communication, rsc.Message) and sent_type(communication) is not None
         case rsc.CommunicationRequirement():
             return "request" in event_names(communication)
         case rsc.TimedTransition():

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from robosc.language.scopes import File
 
 #: Elements with an entry of their own in the outline, even without a name.
-_ITEMS = (rsc.StatedDefinition, rsc.ProvideStatement, rsc.ComponentBehaviour)
+_ITEMS = (rsc.StatedDefinition, rsc.DataStatement, rsc.ComponentBehaviour)
 #: Named elements inside expressions and headers, which the outline omits.
 _HIDDEN = (rsc.FormalParameter, rsc.ArrayElement)
 #: Elements that span several lines and can be folded.

@@ -255,11 +255,11 @@ def _communication(file: File, communication: rsc.CommunicationType) -> Iterator
 
 
 def _restricted(reading: Reading, communication: rsc.CommunicationType) -> Iterator[str]:
-    """List the requirements and assumptions that mention a communication."""
+    """List the requirements, assumptions and limits that mention a communication."""
     texts: dict[Any, str] = {}
     for file, name in _uses(reading, communication):
         around = name.user
-        while around is not None and not isinstance(around, rsc.Requirement | rsc.Assumption):
+        while around is not None and not isinstance(around, rsc.Requirement | rsc.Assumption | rsc.LimitStatement):
             around = around.eContainer()
         if around is not None:
             where = f"line {file.text.span(name.start, name.end).line}"

@@ -217,7 +217,7 @@ class Outline:
                 self._skip(levels)
                 continue
             # A property without braces: the opening brace is missing, and its closing brace follows.
-            unopened = unopened or (starter == "provide" and self._tokens[self._at + 1].is_keyword(":"))
+            unopened = unopened or (starter in {"provide", "limit"} and self._tokens[self._at + 1].is_keyword(":"))
             self._at += 1
         if starter is None and level.starters:
             # The contents of an unknown item cannot be checked.
@@ -298,7 +298,8 @@ class Outline:
         if token.text in level.starters and not is_reserved(token.text):
             # Counts as a keyword only before a name or a number, and not as a name in an expression.
             named = after.kind is Kind.NUMBER or (after.kind is Kind.WORD and not is_reserved(after.text))
-            return named and not token.is_name
+            unfinished = after.kind is Kind.END and token.is_first
+            return (named or unfinished) and not token.is_name
         return token.is_keyword(*level.starters) or (token.is_name and token.is_first and token.text in level.starters)
 
     def _continues(self, level: Level, starters: tuple[str, ...]) -> bool:

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 _LEAVE_OUT = "leave it out"
 #: First keywords of items that declare no name usable elsewhere.
-_DECLARING_NOTHING = first_words("Requirement", "Assumption", "ProvideStatement", "Transition")
+_DECLARING_NOTHING = first_words("Requirement", "Assumption", "ProvideStatement", "LimitStatement", "Transition")
 
 
 def parse_file(text: Text) -> File:
@@ -141,7 +141,7 @@ class _Recovery:
         if complex_ is not None:
             self._report(*complex_, "use variables or functions for its parts")
             self._skip_block(block)
-        elif self._is_library and block.level is DEFINITIONS and self._starts(block, "requirement", "provide"):
+        elif self._is_library and block.level is DEFINITIONS and self._starts(block, "requirement", "provide", "limit"):
             message = f"a library has no {self._tokens[block.first].text} statements"
             self._report(block.first, message, "write it in the robot that imports the library")
             self._skip_block(block)

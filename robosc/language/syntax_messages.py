@@ -378,7 +378,7 @@ def _statement_hint(tokens: Tokens, index: int, expectations: Sequence[str], blo
         return _timed_hint(token, before, expectations)
     if starter.is_keyword("incoming", "outgoing", "service", "action"):
         return _order_hint(tokens, index, expectations)
-    if starter.is_keyword("provide") and token.text in {"else", ":"}:
+    if starter.is_keyword("provide", "limit") and token.text in {"else", ":"}:
         return _CHOICE if token.text == "else" else "write the properties of an object in braces"
     if starter.is_keyword("requirement", "property"):
         return _set_hint(tokens, index, block) or _requirement_hint(token, before, expectations)

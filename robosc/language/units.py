@@ -38,7 +38,7 @@ def units(file: File, ros_types: RosTypes) -> Iterator[tuple[int, str]]:
                 if isinstance(segment, rsc.PropertySegment):
                     measured = _field(measured, segment.property, ros_types)
             yield from _unit_notes(file, element, measured)
-        elif isinstance(element, rsc.ProvideStatement):
+        elif isinstance(element, rsc.DataStatement):
             reference = element.communicationType
             communication = reference.communicationType if reference is not None else None
             data = _data(communication, sending_event(communication))

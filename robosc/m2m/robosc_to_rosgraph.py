@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from robosc.base.ros_types import RosTypes
 from robosc.m2m.declarations import Declarations, default_value
 from robosc.m2m.expressions import NodeExpressions, ReceivedValue
+from robosc.m2m.single_precision import round_constants
 from robosc.m2m.stored_types import StoredTypes
 from robosc.model import expression as ex
 from robosc.model import robosc, rosgraph, sct
@@ -31,13 +33,15 @@ from robosc.model.semantics.typing import ArrayType, ObjectType, declared_type
 from robosc.model.semantics.walks import branches
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from robosc.base.ros_types import Section
     from robosc.m2m.trace import Trace
     from robosc.model.semantics.communication import PortEvent
     from robosc.model.semantics.inputs import InputSource
-    from robosc.model.semantics.instances import Instance, InstanceParameter, InstanceVariable, PortInstance
+    from robosc.model.semantics.instances import Instance, InstanceParameter, InstanceVariable, PortInstance, Statement
+
+    _Translation = Callable[[ex.Expression], ex.Expression]
 
 #: Field of a basic value in a type of std_msgs.
 _FIELD = "data"
@@ -198,25 +202,40 @@ class _RoboscToRosgraph:
             alternative = rosgraph.ProvidedData(location=self.trace.provided[statement], source=provided.source)
             is_object = isinstance(declared_type(port.instance.data_type(sent)), ObjectType)
             lone = () if is_object else (self.field(port, event),)
-            for field in self.fields(provided.data, statement.within, lone, port.instance.data_type(sent)):
-                alternative.fields.append(field)
+            translate = partial(self.expressions, within=statement.within)
+            alternative.fields.extend(self.fields(provided.data, translate, lone, port.instance.data_type(sent)))
             sending.alternatives.append(alternative)
         if (port, event) in self.inputs:
             sending.inputs.extend(self.input_assignments(port, event, self.value_of(port, event)))
+        sending.limits.extend(self.limit(statement, port, event) for statement in self.instances.limits(port))
         return sending
 
+    def limit(
+        self, statement: Statement[robosc.LimitStatement], port: PortInstance, event: PortEvent
+    ) -> rosgraph.DataLimit:
+        value, written = self.value_of(port, event), statement.element
+        translate = partial(self.expressions, within=statement.within, data=value)
+        limit = rosgraph.DataLimit(
+            condition=None if written.condition is None else translate(written.condition),
+            fields=self.fields(written.data, translate, tuple(value.fields), port.instance.data_type(value.type)),
+            source=written.source,
+        )
+        assert event.section is not None
+        round_constants(limit, self.interface(port.communication), event.section, self.known)
+        return limit
+
     def fields(
-        self, data: ex.Expression, within: Instance | None, path: tuple[str, ...], declared: robosc.DataType
+        self, data: ex.Expression, translate: _Translation, path: tuple[str, ...], declared: robosc.DataType
     ) -> list[rosgraph.FieldAssignment]:
         if isinstance(data, ex.Conditional) and isinstance(declared_type(declared), ArrayType | ObjectType):
             return [
-                self.under(conditions, field, within)
+                self.under(conditions, field, translate)
                 for conditions, branch in branches(data)
-                for field in self.fields(branch, within, path, declared)
+                for field in self.fields(branch, translate, path, declared)
             ]
         if isinstance(data, robosc.ArrayLiteral):
             assert isinstance(declared, robosc.Array)
-            values = [self.converted(element, within, declared.type) for element in data.elements]
+            values = [self.converted(element, translate, declared.type) for element in data.elements]
             array = rosgraph.ArrayLiteral(elements=values)
             kind = self.wire_type(declared)
             return [rosgraph.FieldAssignment(path=list(path), type=kind, value=array, source=data.source)]
@@ -225,14 +244,14 @@ class _RoboscToRosgraph:
                 field
                 for assignment in data.properties
                 for field in self.fields(
-                    assignment.value, within, (*path, assignment.property.name), assignment.property.type
+                    assignment.value, translate, (*path, assignment.property.name), assignment.property.type
                 )
             ]
         return [
             rosgraph.FieldAssignment(
                 path=list(path),
                 type=self.node_type(declared),
-                value=self.converted(data, within, declared),
+                value=self.converted(data, translate, declared),
                 source=data.source,
             )
         ]
@@ -241,18 +260,18 @@ class _RoboscToRosgraph:
         self,
         conditions: Sequence[tuple[ex.Expression, bool]],
         field: rosgraph.FieldAssignment,
-        within: Instance | None,
+        translate: _Translation,
     ) -> rosgraph.FieldAssignment:
         """Let an assignment happen only if these conditions hold, or do not hold, in this order."""
         tests = [
             test if holds else ex.Negation(operand=test)
-            for test, holds in ((self.expressions(condition, within), holds) for condition, holds in conditions)
+            for test, holds in ((translate(condition), holds) for condition, holds in conditions)
         ]
         field.condition = conjunction([*tests, *([field.condition] if field.condition is not None else [])])
         return field
 
-    def converted(self, value: ex.Expression, within: Instance | None, declared: robosc.DataType) -> ex.Expression:
-        expression = self.expressions(value, within)
+    def converted(self, value: ex.Expression, translate: _Translation, declared: robosc.DataType) -> ex.Expression:
+        expression = translate(value)
         return self.expressions.as_double(expression) if isinstance(declared, robosc.DoubleDataType) else expression
 
     # Incoming data

@@ -518,15 +518,23 @@ class Assumption(StatedDefinition):
     condition: expression.Expression
     def __init__(self, *, target: EventSet | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., template: Component | None = ..., source: Place | None = ...) -> None: ...
 
-class ProvideStatement(Definition, ComponentDefinition):
-    """The data of a command (thesis figure 4.12)."""
+class DataStatement(Definition, ComponentDefinition):
+    """A statement on the data of a command: a provide statement or a limit."""
     communicationType: CommunicationReference
     data: expression.Expression
     condition: expression.Expression | None
     def __init__(self, *, communicationType: CommunicationReference | None = ..., data: expression.Expression | None = ..., condition: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
+class ProvideStatement(DataStatement):
+    """The data of a command (thesis figure 4.12). The first statement, in the order of the text, with a true condition applies."""
+    def __init__(self, *, communicationType: CommunicationReference | None = ..., data: expression.Expression | None = ..., condition: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
+
+class LimitStatement(DataStatement):
+    """A change of the data of an incoming message, after `provide`. `value` is the data so far. All statements with a true condition apply: first those in components, then those outside, in the order of the text."""
+    def __init__(self, *, communicationType: CommunicationReference | None = ..., data: expression.Expression | None = ..., condition: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
+
 class ObjectValue(expression.Expression):
-    """A value for an object in provided data. Omitted properties have their ROS default."""
+    """A value for an object in provided data or in a limit. Omitted properties have their ROS default, or stay in a limit."""
     properties: MutableSequence[ObjectPropertyValue]
     def __init__(self, *, properties: Iterable[ObjectPropertyValue] = ..., source: Place | None = ...) -> None: ...
 

@@ -97,13 +97,20 @@ class Sending(expression.NamedElement):
     alternatives: MutableSequence[ProvidedData]
     inputs: MutableSequence[InputAssignment]
     onChange: bool | None
-    def __init__(self, *, event: sct.Event | None = ..., alternatives: Iterable[ProvidedData] = ..., inputs: Iterable[InputAssignment] = ..., onChange: bool | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
+    limits: MutableSequence[DataLimit]
+    def __init__(self, *, event: sct.Event | None = ..., alternatives: Iterable[ProvidedData] = ..., inputs: Iterable[InputAssignment] = ..., onChange: bool | None = ..., limits: Iterable[DataLimit] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class ProvidedData(expression.Located):
     """The data of one provide statement."""
     location: sct.Location
     fields: MutableSequence[FieldAssignment]
     def __init__(self, *, location: sct.Location | None = ..., fields: Iterable[FieldAssignment] = ..., source: Place | None = ...) -> None: ...
+
+class DataLimit(expression.Located):
+    """A change of data that the node is about to send. A wire access without variable and quantifier reads the data so far. A double that a limit reads and that is not finite withholds the event."""
+    condition: expression.Expression | None
+    fields: MutableSequence[FieldAssignment]
+    def __init__(self, *, condition: expression.Expression | None = ..., fields: Iterable[FieldAssignment] = ..., source: Place | None = ...) -> None: ...
 
 class FieldAssignment(expression.Located):
     """An assignment to a field of data that the node sends."""
@@ -154,10 +161,11 @@ class NodeAssignment(expression.Located):
 class NodeVariableReference(expression.Expression):
     """The value of a variable of the node."""
     variable: NodeVariable
-    def __init__(self, *, variable: NodeVariable | None = ..., source: Place | None = ...) -> None: ...
+    single: bool | None
+    def __init__(self, *, variable: NodeVariable | None = ..., single: bool | None = ..., source: Place | None = ...) -> None: ...
 
 class WireAccess(expression.Expression):
-    """The data of the current event, or the argument of the conversion in its rules."""
+    """The data of the current event, the argument of the conversion in its rules, or the data to be sent in a limit."""
     steps: MutableSequence[WireStep]
     type: expression.Type | None
     quantifier: ArrayQuantifier | None

@@ -44,6 +44,7 @@ UNRESERVED = {
     "in",
     "send",
     "is",
+    "limit",
     "min",
     "most",
     "ms",

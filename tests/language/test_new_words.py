@@ -10,7 +10,7 @@ FUNCTIONS = "abs min max mod floor ceil round sqrt sin cos atan2 hypot size"
 WORDS = f"""{FUNCTIONS} all any count in after without ms s each at most since automaton never always reachable property
     constant parameter condition function is then else send change canceled running Failure unavailable rejected timeout
     lost aborted failed unreadable because refuse not msg srv
-    assume violated number text""".split()
+    assume violated number text limit""".split()
 NAMED = """robot {word} {{
   datatype object Data {{ {word}: boolean }}
   interface link use Data from my_msgs

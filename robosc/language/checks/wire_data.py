@@ -70,7 +70,7 @@ class UsedData:
             for _, element in tree(base):
                 if isinstance(element, rsc.ResultTransition):
                     self._received(element)
-                elif isinstance(element, rsc.ProvideStatement):
+                elif isinstance(element, rsc.DataStatement):
                     self._provided(element)
                 elif isinstance(element, rsc.EnumTransformationRule):
                     self._read(element.eContainer(), element.condition)
@@ -95,9 +95,12 @@ class UsedData:
             for assignment in transition.assignments:
                 self._read((transition.communicationType.communicationType, event), assignment.value)
 
-    def _provided(self, statement: rsc.ProvideStatement) -> None:
+    def _provided(self, statement: rsc.DataStatement) -> None:
         communication = communication_of(statement.communicationType)
-        touched = self._touched.setdefault((communication, sending_event(communication)), [])
+        source = communication, sending_event(communication)
+        for expression in (statement.data, statement.condition):
+            self._read(source, expression)
+        touched = self._touched.setdefault(source, [])
         touched += [part for _, part in tree(statement) if isinstance(part, rsc.ObjectPropertyValue)]
 
     def _read(self, source: object, expression: ex.Expression | None) -> None:

@@ -49,6 +49,7 @@ CLAUSES: dict[str, tuple[set[str], set[str]]] = {
     "ReachabilityProperty": ({"from"}, {"reachable"}),
     "ReachabilityRequirement": ({"from"}, {"reachable"}),
     "ProvideStatement": ({"if"}, set()),
+    "LimitStatement": ({"if"}, set()),
     "Conditional": ({"then", "else"}, set()),
     "Constant": (set(), {"="}),
     "Parameter": (set(), {"="}),
@@ -56,7 +57,7 @@ CLAUSES: dict[str, tuple[set[str], set[str]]] = {
     "Function": (set(), {"="}),
 }
 #: Rules whose clauses break independently, because a clause may begin with a list that breaks.
-_LOOSE = {"NeedsRequirement", "Assumption", "ProvideStatement"}
+_LOOSE = {"NeedsRequirement", "Assumption", "ProvideStatement", "LimitStatement"}
 
 
 def layout(text: str, tree: Node) -> Document:

@@ -126,6 +126,8 @@ def rules() -> Iterator[HighlightRule]:
     yield HighlightRule(r"(send)(\s*:\s*)(change)\b", (Kind.CONTROL, Kind.PUNCTUATION, Kind.CONTROL))
     yield HighlightRule(rf"(?<![\w^])(at){blank}(most)\b", (Kind.CONTROL, Kind.BLANK, Kind.CONTROL))
     yield HighlightRule(r"(?<![\w^])(canceled)(?=\s+(?:from|to)\b)", (Kind.CONTROL,))
+    command = rf"{_NAME}(?:\[[^\]\n]*\])?(?:\s*\.\s*{_NAME})?"
+    yield HighlightRule(rf"(?<![\w^])(limit)(?=\s+{command}\s+with\b)", (Kind.DECLARATION,))
     reserved = [word for words in RESERVED.values() for word in words]
     yield HighlightRule(rf"{_any([word for word in reserved if word not in _KEYS])}(?=\s*:(?!=))", (Kind.NAME,))
     # Words that depend on the text behind them

@@ -164,7 +164,8 @@ class CppPrinter(Printer):
             case rosgraph.ErrorReason():
                 return "reason_of(reason)"
             case rosgraph.NodeVariableReference():
-                return f"{self._node}.{self._names.variable(expression.variable)}"
+                name = f"{self._node}.{self._names.variable(expression.variable)}"
+                return f"static_cast<double>(static_cast<float>({name}))" if expression.single else name
         return super().atom(expression)
 
     def wire(self, access: rosgraph.WireAccess, indices: Sequence[str] = ()) -> str:

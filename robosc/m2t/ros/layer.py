@@ -29,6 +29,8 @@ class LayerNode:
         messages += [client.request for client in self.node.clients]
         #: Gates of the controller's commands, by the enumerator of the event.
         self.gates = {gate.event: gate for gate in gates}
+        #: Events of messages with limits.
+        self.limited = {message.event for _, message in node.limited}
         #: Messages that replace blocked ones, by the enumerator of the event.
         self.instead = {last.message.event: last for last in node.on_blocked}
         #: Events of the controller and internal events that change the node's own data.

@@ -17,10 +17,14 @@ from robosc.model import expression as ex
 from robosc.model.reflection import tree
 from robosc.model.semantics.definition import reported_variables
 from robosc.model.semantics.messages import (
+    EACH,
+    doubles_read,
+    fields_set,
     find_message,
     first_value,
     holds_objects,
     is_structured,
+    limit_expressions,
     parts_with_headers,
     paths_set,
     reads_elements,
@@ -34,7 +38,9 @@ from robosc.model.semantics.typing import DOUBLE, ArrayType, infer
 from robosc.model.semantics.walks import parts
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
+
+    from robosc.model.semantics.messages import Path
 
 #: Method that writes a field unchanged.
 _HAND_ON = "hand_on"
@@ -119,12 +125,21 @@ class Alternative:
 
 
 @dataclass(frozen=True)
+class Limit:
+    """A change of data to be sent, under a condition, None if it is always true. `fields` as in `Alternative`."""
+
+    condition: str | None
+    fields: list[tuple[str | None, list[tuple[str, str, str]]]]
+
+
+@dataclass(frozen=True)
 class Message:
     """Data that the node sends: a message, a request or a goal.
 
     `on_change` are the fields to compare if the message is sent only on change. Sending may fail if a double may not be
     finite, or if the message `reads_elements` of arrays. `reaction` are the changes in the node. `parts` are those that
-    may hold headers for the node to fill in; "" is the whole message.
+    may hold headers for the node to fill in; "" is the whole message. `limits` change the data; they read `before`, a
+    copy of it. `doubles` are statements that require the doubles that they read to be finite.
     """
 
     word: str
@@ -136,6 +151,8 @@ class Message:
     on_change: list[str] | None
     reaction: EventHandler | None
     parts: list[str]
+    limits: list[Limit]
+    doubles: list[str]
 
 
 @dataclass(frozen=True)
@@ -345,8 +362,17 @@ class GeneratedNode:
         """Whether the node sends received objects unchanged."""
         messages = [message for publisher in self.publishers for message in publisher.messages]
         messages += [client.request for client in self.clients]
-        fields = [field for message in messages for alternative in message.alternatives for field in alternative.fields]
-        return any(method == _HAND_ON for _, writings in fields for method, _, _ in writings)
+        groups = [alternative.fields for message in messages for alternative in message.alternatives]
+        groups += [limit.fields for message in messages for limit in message.limits]
+        writings = (writing for fields in groups for _, several in fields for writing in several)
+        return any(method == _HAND_ON for method, _, _ in writings)
+
+    @property
+    def limited(self) -> list[tuple[Publisher, Message]]:
+        """Messages with limits."""
+        return [
+            (publisher, message) for publisher in self.publishers for message in publisher.messages if message.limits
+        ]
 
     @property
     def reason(self) -> Reasons | None:
@@ -574,46 +600,68 @@ class GeneratedNode:
 
     def _message(self, sending: rosgraph.Sending) -> Message:
         plant: sct.Plant = sending.event.eContainer()
-        fields = [field for provided in sending.alternatives for field in provided.fields]
-        reads = any(reads_elements(part) for field in fields for part in (field.condition, field.value) if part)
+        fields = fields_set(sending)
+        values = [part for field in fields for part in (field.condition, field.value) if part is not None]
+        reads = any(map(reads_elements, [*values, *limit_expressions(sending)]))
+        doubles = doubles_read(sending)
         return Message(
             self._sent.fresh(self._names.c.member(plant).removeprefix(f"{plant.kind.name}_")),
             self._names.c.enumerator(sending.event),
             self._events[sending.event].remarks,
             [self._alternative(provided) for provided in sending.alternatives],
-            reads or any(map(_may_be_infinite, fields)),
+            reads or bool(doubles) or any(map(_may_be_infinite, fields)),
             reads,
             [".".join(path) for path in paths_set(sending)] if sending.onChange else None,
             self._handler(sending.event) if sending.event in self._reactions else None,
             [".".join(path) for path in parts_with_headers(sending)],
+            [self._limit(limit) for limit in sending.limits],
+            [_required(path) for path in doubles],
         )
+
+    def _limit(self, limit: rosgraph.DataLimit) -> Limit:
+        printer = CppPrinter(self._names, data="before")
+        condition = None if limit.condition is None else printer(limit.condition)
+        return Limit(condition, self._groups(limit.fields, printer))
 
     def _alternative(self, provided: rosgraph.ProvidedData) -> Alternative:
-        return Alternative(
-            self._names.is_in(provided.location),
-            [
-                (condition, [self._writing_of(field) for field in fields])
-                for condition, fields in groupby(provided.fields, self._condition_of)
-            ],
-        )
+        return Alternative(self._names.is_in(provided.location), self._groups(provided.fields, self._printer))
 
-    def _condition_of(self, assignment: rosgraph.FieldAssignment) -> str | None:
-        return None if assignment.condition is None else self._printer(assignment.condition)
+    def _groups(
+        self, fields: Iterable[rosgraph.FieldAssignment], printer: CppPrinter
+    ) -> list[tuple[str | None, list[tuple[str, str, str]]]]:
+        conditions = groupby(fields, lambda field: None if field.condition is None else printer(field.condition))
+        return [
+            (condition, [self._writing_of(field, printer) for field in several]) for condition, several in conditions
+        ]
 
-    def _writing_of(self, assignment: rosgraph.FieldAssignment) -> tuple[str, str, str]:
+    def _writing_of(self, assignment: rosgraph.FieldAssignment, printer: CppPrinter) -> tuple[str, str, str]:
         """Return the method that writes a field, the field's name, and its value."""
         name, value, kind = ".".join(assignment.path), assignment.value, assignment.type
         if holds_objects(kind) and isinstance(value, rosgraph.WireAccess):
-            return _HAND_ON, name, self._printer(value)
+            return _HAND_ON, name, printer(value)
         if isinstance(value, rosgraph.ArrayLiteral) and isinstance(kind, rosgraph.ArrayType):
             element = kind.element
             assert element is not None
-            values = [self._value(part, element) for part in value.elements]
+            values = [_value(part, element, printer) for part in value.elements]
             return "set_elements", name, f"std::initializer_list<{self._type(element)}>{{{', '.join(values)}}}"
-        return "set_elements" if is_structured(kind) else "set", name, self._value(value, kind)
+        return "set_elements" if is_structured(kind) else "set", name, _value(value, kind, printer)
 
-    def _value(self, value: ex.Expression, kind: ex.Type) -> str:
-        return self._printer.integer(value, kind) if isinstance(kind, ex.IntegerType) else self._printer(value)
+
+def _value(value: ex.Expression, kind: ex.Type, printer: CppPrinter) -> str:
+    return printer.integer(value, kind) if isinstance(kind, ex.IntegerType) else printer(value)
+
+
+def _required(path: Path, data: str = "data", label: Path = ()) -> str:
+    """Return the statement that requires the doubles at a path of data to be finite."""
+    for index, step in enumerate(path):
+        rest = path[index + 1 :]
+        if step == EACH:
+            element = f"element{len(label)}"
+            return f"for (const auto& {element} : {data}) {_required(rest, element, label)}"
+        if step.isdigit():
+            return f"if ({data}.size() > {step}) {_required(rest, f'{data}[{step}]', (*label, step))}"
+        data, label = f"{data}.{step}", (*label, step)
+    return f"write.require({string_literal('.'.join(label))}, {data});"
 
 
 def _may_be_infinite(field: rosgraph.FieldAssignment) -> bool:

@@ -270,7 +270,7 @@ class RosTarget:
             sent = [end.interface for ends in (node.publishers, node.clients) for end in ends]
         else:
             sent = [last.publisher.interface for last in node.on_blocked]
-        composes = self.kind == "controller" or node.on_blocked
+        composes = self.kind == "controller" or node.on_blocked or node.limited
         defaults = any(has_defaults(interface) for interface in sent)
         present = {
             self.kind: True,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import struct
 from functools import partial
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
@@ -14,7 +15,7 @@ from robosc.model.semantics.walks import operands
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-__all__ = ["Program", "Value", "as_double", "divide", "evaluate", "literal", "saturate"]
+__all__ = ["Program", "Value", "as_double", "divide", "evaluate", "literal", "saturate", "single_precision"]
 
 _Result = TypeVar("_Result")
 _LITERALS = (ex.BooleanLiteral, ex.IntegerLiteral, ex.DoubleLiteral, ex.StringLiteral)
@@ -205,6 +206,15 @@ def saturate(value: int, minimum: int | None, maximum: int | None) -> int:
     if minimum is not None:
         value = max(value, minimum)
     return value if maximum is None else min(value, maximum)
+
+
+def single_precision(value: float) -> float:
+    """Return the value rounded to a float of 32 bits. A value beyond each of these stays."""
+    try:
+        (rounded,) = struct.unpack("f", struct.pack("f", value))
+    except OverflowError:
+        return value
+    return float(rounded)
 
 
 def literal(value: Value) -> ex.Expression:

@@ -215,6 +215,12 @@ class Instances:
         outside = [statement for statement in statements if statement.within is None]
         return outside or statements
 
+    def limits(self, port: PortInstance) -> list[Statement[robosc.LimitStatement]]:
+        """Return the limits of a message in the order in which they apply: in components, then outside."""
+        statements = self.statements(robosc.LimitStatement)
+        mine = [limit for limit in statements if self.port(limit.element.communicationType, limit.within) == port]
+        return sorted(mine, key=lambda limit: limit.within is None)
+
     def statements(self, kind: type[_Element]) -> list[Statement[_Element]]:
         """Return the requirements, or other definitions of a kind: outside of components, then in each instance.
 

@@ -317,20 +317,47 @@ def _in_arrays(reads_by_path: dict[Path, MessageRead]) -> Shown:
     return nested
 
 
+def fields_set(sending: rosgraph.Sending) -> list[rosgraph.FieldAssignment]:
+    """Return the assignments of provided data and of limits, in the order of the model."""
+    return [field for data in (sending.alternatives, sending.limits) for one in data for field in one.fields]
+
+
+def limit_expressions(sending: rosgraph.Sending) -> list[ex.Expression]:
+    """Return the conditions and values of the limits of a message."""
+    fields = [field for limit in sending.limits for field in limit.fields]
+    conditions = [*(limit.condition for limit in sending.limits), *(field.condition for field in fields)]
+    return [*(condition for condition in conditions if condition is not None), *(field.value for field in fields)]
+
+
 def paths_set(sending: rosgraph.Sending) -> list[Path]:
     """Return the fields that the model sets, in the order of the model; `()` is the whole message."""
-    return list(dict.fromkeys(tuple(field.path) for data in sending.alternatives for field in data.fields))
+    return list(dict.fromkeys(tuple(field.path) for field in fields_set(sending)))
+
+
+def doubles_read(sending: rosgraph.Sending) -> list[Path]:
+    """Return the paths of the doubles that the limits of a message read, each once."""
+    paths: dict[Path, None] = {}
+    for expression in limit_expressions(sending):
+        for _, part in tree(expression):
+            if isinstance(part, rosgraph.WireAccess) and source_of(part) is None:
+                path, kind = path_of(part), part.type
+                if isinstance(kind, rosgraph.ArrayType):
+                    path, kind = (*path, EACH), kind.element
+                if isinstance(kind, ex.DoubleType):
+                    paths[path] = None
+    return list(paths)
 
 
 def parts_with_headers(sending: rosgraph.Sending) -> list[tuple[str, ...]]:
     """Return the paths of all parts on the way to fields that the model sets, sorted; `()` is the whole message.
 
     A goal with `pose.pose.position.x` has `pose`, `pose.pose` and `pose.pose.position`: each part with a field `header`
-    gets the time and the frame. A part is left out if the model sets a field of its `header`.
+    gets the time and the frame. A part is left out if provided data sets a field of its `header`.
     """
     paths = paths_set(sending)
     parts = {()} | {path[:length] for path in paths for length in range(1, len(path))}
-    with_header = {path[: path.index("header")] for path in paths if "header" in path}
+    provided = (tuple(field.path) for data in sending.alternatives for field in data.fields)
+    with_header = {path[: path.index("header")] for path in provided if "header" in path}
     return sorted(part for part in parts - with_header if "header" not in part)
 
 

@@ -150,7 +150,7 @@ def object_value_type(value: rsc.ObjectValue) -> Type:
     around = value.eContainer()
     while isinstance(around, ex.Conditional):
         around = around.eContainer()
-    if isinstance(around, rsc.ProvideStatement):
+    if isinstance(around, rsc.DataStatement):
         reference = around.communicationType
         return provided_data_type(reference.communicationType if reference else None)
     is_property = isinstance(around, rsc.ObjectPropertyValue) and around.property
@@ -168,8 +168,8 @@ def value_type(element: ex.Located) -> Type | None:
 def value_types(element: ex.Located) -> Sequence[Type]:
     """Return the types of `value` at a place in the model; none if there is no `value`.
 
-    Inside an enum, `value` is the enum's source. Inside a transition, it is the data of its event. In the condition of
-    a requirement, it is the data of each of its commands.
+    Inside an enum, `value` is the enum's source. Inside a transition, it is the data of its event; inside a limit,
+    the data of its message. In the condition of a requirement, it is the data of each of its commands.
     """
     inside, around = None, element
     while around is not None:
@@ -185,6 +185,8 @@ def value_types(element: ex.Located) -> Sequence[Type]:
                 named = around.event
                 row = None if named is None else port_event_of(named)
                 return (_sent(named.communicationType),) if row is not None and row.is_sent else ()
+            case rsc.LimitStatement():
+                return (_sent(around.communicationType),)
             case rsc.CommunicationRequirement() if inside is around.condition and around.target is not None:
                 return tuple(dict.fromkeys(map(_sent, around.target.communicationTypes)))
         inside, around = around, around.eContainer()

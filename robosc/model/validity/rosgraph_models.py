@@ -12,7 +12,14 @@ from robosc.model import expression as ex
 from robosc.model import rosgraph, sct
 from robosc.model.reflection import tree
 from robosc.model.semantics.failures import FAILURES
-from robosc.model.semantics.messages import EACH, path_of, reads_elements, source_of
+from robosc.model.semantics.messages import (
+    EACH,
+    fields_set,
+    limit_expressions,
+    path_of,
+    reads_elements,
+    source_of,
+)
 from robosc.model.semantics.typing import BOOLEAN, declared_type, infer
 from robosc.model.validity.model_checks import check_type, demand, fitting_operands
 
@@ -91,10 +98,11 @@ def _converted_shape(conversion: rosgraph.Conversion, _model: Model) -> Iterator
 
 def _sent_shape(sending: rosgraph.Sending, _model: Model) -> Iterator[Fault]:
     shape = _Shape()
-    for alternative in sending.alternatives:
-        for field in alternative.fields:
-            kind = None if isinstance(field.type, rosgraph.ObjectType) else field.type
-            yield from shape.add(field, list(field.path), kind)
+    for field in fields_set(sending):
+        kind = None if isinstance(field.type, rosgraph.ObjectType) else field.type
+        yield from shape.add(field, list(field.path), kind)
+    for access in _reads(limit_expressions(sending)):
+        yield from _received(shape, access)
 
 
 def _received_shapes(graph: rosgraph.RosGraph, _model: Model) -> Iterator[Fault]:
@@ -192,6 +200,7 @@ CHECKS: Checks = {
     rosgraph.Reception: [_inputs],
     rosgraph.Sending: [_sent_shape],
     rosgraph.ProvidedData: [_DATA],
+    rosgraph.DataLimit: [check_type("condition")],
     rosgraph.Reaction: [_ONE_PLANT, check_type("guard", lambda _: BOOLEAN)],
     rosgraph.Subscription: [_interface(rosgraph.InterfaceKind.message)],
     rosgraph.Publisher: [_interface(rosgraph.InterfaceKind.message)],

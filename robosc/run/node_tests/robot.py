@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robosc.base.ros_types import Section
-from robosc.run.node_tests.messages import Definition, Field, Path, fields_sent, message, new_object
+from robosc.model.semantics.messages import fields_set, limit_expressions, reads
+from robosc.run.node_tests.messages import Definition, Field, Path, data_read, fields_sent, message, new_object
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -73,9 +74,9 @@ class Robot:
     def _note(self, interface: rosgraph.Interface, section: Section, sending: rosgraph.Sending) -> None:
         fields = self._fields.setdefault((interface, section), {})
         definition = Definition(self._distribution, interface, section)
-        for field in (field for data in sending.alternatives for field in data.fields):
-            for path, kind in fields_sent(field):
-                fields[path] = definition.field(path, kind)
+        sent = (known for field in fields_set(sending) for known in fields_sent(field))
+        for path, kind in (*sent, *data_read(reads(limit_expressions(sending)))):
+            fields[path] = definition.field(path, kind)
 
     # Calls of the controller
 

@@ -16,7 +16,7 @@ from robosc.engine import Blocked
 from robosc.model import rosgraph, sct
 from robosc.model.semantics.evaluation import evaluate
 from robosc.model.semantics.failures import possible_reasons
-from robosc.model.semantics.messages import holds_objects
+from robosc.model.semantics.messages import fields_set, holds_objects
 from robosc.model.semantics.naming import output_name
 from robosc.model.semantics.roles import event_name, plant_of
 from robosc.run.node_tests.drive import LATENESS, Drive
@@ -563,8 +563,7 @@ class Player(Drive):
             tuple(field.path)
             for sending in sendings
             if sending.event == event
-            for data in sending.alternatives
-            for field in data.fields
+            for field in fields_set(sending)
             if isinstance(field.value, rosgraph.WireAccess) and holds_objects(field.type)
         ]
 

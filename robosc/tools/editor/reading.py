@@ -42,7 +42,7 @@ _KINDS: dict[type, types.SymbolKind] = {
     rsc.Requirement: types.SymbolKind.Operator,
     rsc.Property: types.SymbolKind.Key,
     rsc.Assumption: types.SymbolKind.Key,
-    rsc.ProvideStatement: types.SymbolKind.Object,
+    rsc.DataStatement: types.SymbolKind.Object,
 }
 
 

@@ -1,4 +1,4 @@
-// Checks of provided data that chooses between objects and arrays: compiles the functions of a generated node that
+// Checks of limits and of provided data that chooses between objects and arrays: compiles the functions of a generated node that
 // prepare its messages, with stand-ins for the node and its messages.
 #include <initializer_list>
 #include <string>
@@ -23,6 +23,9 @@ struct Pose {
 namespace std_msgs::msg {
 struct Float64MultiArray {
   std::vector<double> data;
+};
+struct Float32 {
+  float data = 0.0F;
 };
 }  // namespace std_msgs::msg
 
@@ -72,12 +75,14 @@ struct Node {
   int warnings_ = 0;
   geometry_msgs::msg::Twist velocity_message_, nested_message_;
   geometry_msgs::msg::Pose aim_message_;
-  std_msgs::msg::Float64MultiArray gain_message_;
+  std_msgs::msg::Float64MultiArray gain_message_, smoothed_message_;
+  geometry_msgs::msg::Twist slowed_message_;
+  std_msgs::msg::Float32 level_message_;
 };
 
 void each_branch_sets_its_own_fields(Node& node) {
   CHECK(node.prepare_velocity());
-  CHECK(node.log_.line == R"({"linear":{"x":0.3},"angular":{"z":1}})");
+  CHECK(node.log_.line == R"({"angular":{"z":1},"linear":{"x":0.3}})");
   node.supervisor_.state.component_Person = chooser_component_Person_near;
   CHECK(node.prepare_velocity());
   CHECK(node.log_.line == R"({"linear":{"x":0.1}})");
@@ -112,6 +117,43 @@ void arrays_are_chosen(Node& node) {
   CHECK(node.prepare_gain() && node.gain_message_.data == node.data_.Base.gains);
 }
 
+void limits_change_what_is_sent(Node& node) {
+  node.data_.Base.distance = 2.0;
+  CHECK(node.prepare_slowed() && node.slowed_message_.linear.x == 0.0 && node.slowed_message_.linear.z == 2.0);
+  CHECK(node.slowed_message_.linear.y == 1.0 && node.slowed_message_.angular.z == 0.5);
+  CHECK(node.log_.line == R"({"angular":{"z":0.5},"linear":{"x":0,"y":1,"z":2}})");
+  node.data_.Base.distance = 0.25;
+  node.data_.Base.stored.y = 9.0;
+  CHECK(node.prepare_slowed() && node.slowed_message_.linear.y == 9.0 && node.slowed_message_.angular.z == 0.25);
+  CHECK(node.log_.line == R"({"angular":{"z":0.25}})");
+  node.data_.Base.distance = 1.0 / 0.0;
+  CHECK(!node.prepare_slowed());
+}
+
+void what_was_limited_to_a_number_is_not_above_it(Node& node) {
+  node.data_.Base.distance = 2.0;
+  CHECK(node.prepare_level() && node.level_message_.data == 0.6F && node.log_.line == "0.6000000238418579");
+  node.data_.parameters.reach = 0.1;
+  node.data_.Base.distance = 0.1;
+  CHECK(node.prepare_level() && node.level_message_.data == 0.0F);
+}
+
+void limits_read_arrays(Node& node) {
+  node.warnings_ = 0;
+  CHECK(node.prepare_smoothed() && node.smoothed_message_.data.empty());
+  auto& data = node.smoothed_message_;
+  FieldWriter write(false);
+  ArrayReader read;
+  data.data = {0.0, 3.0, 2.0};
+  node.limit_smoothed(data, write, read);
+  CHECK(read.complete() && write.fault() == nullptr && data.data == std::vector<double>({3.0, 2.0}));
+  node.limit_smoothed(data, write, read);
+  CHECK(!read.complete());
+  data.data[1] = 0.0 / 0.0;
+  node.limit_smoothed(data, write, read);
+  CHECK(std::string(write.fault()) == "data");
+}
+
 }  // namespace
 
 int main() {
@@ -124,5 +166,11 @@ int main() {
   inner_choices_follow_outer_ones(node);
   stored_objects_are_chosen(node);
   arrays_are_chosen(node);
+  node = Node();
+  node.supervisor_.state.data_slowed = chooser_data_slowed_d1;
+  node.supervisor_.state.data_level = chooser_data_level_d1;
+  limits_change_what_is_sent(node);
+  what_was_limited_to_a_number_is_not_above_it(node);
+  limits_read_arrays(node);
   return faults;
 }

@@ -112,12 +112,27 @@ void what_is_written_can_be_told() {
   write.set("pose.orientation.z", z, 1e21);
   write.set("posed.count", count, Integer(70000));
   write.set("last", z, -2.0);
-  CHECK(to_json(write) == R"({"pose":{"position":{"x":0.1,"y":null},"orientation":{"z":1e+21}},)"
-                          R"("posed":{"count":32767},"last":-2})");
+  CHECK(to_json(write) == R"({"last":-2,"pose":{"orientation":{"z":1e+21},"position":{"x":0.1,"y":null}},)"
+                          R"("posed":{"count":32767}})");
+  write.set("pose.position.x", x, 0.2);
+  write.set("last", z, -1.0);
+  CHECK(to_json(write) == R"({"last":-1,"pose":{"orientation":{"z":1e+21},"position":{"x":0.2,"y":null}},)"
+                          R"("posed":{"count":32767}})");
   FieldWriter basic(true);
   basic.set("data", count, Integer(5));
   CHECK(to_json(basic) == "5");
+  basic.set("data", count, Integer(6));
+  CHECK(to_json(basic) == "6");
   CHECK(to_json(FieldWriter(true)) == "{}");
+}
+
+void what_is_required_is_finite() {
+  FieldWriter write(false);
+  write.require("x", 1.0F);
+  CHECK(write.fault() == nullptr);
+  write.require("y.z", kInfinity);
+  write.require("x", kNaN);
+  CHECK(std::string(write.fault()) == "y.z");
 }
 
 void elements_are_numbers_of_any_size_or_truth_values() {
@@ -158,6 +173,7 @@ int main(int count, char** arguments) {
   elements_that_are_not_there_are_noticed();
   fields_take_what_fits();
   what_is_written_can_be_told();
+  what_is_required_is_finite();
   elements_are_numbers_of_any_size_or_truth_values();
   json_is_json();
   return faults;

@@ -58,8 +58,8 @@ def types(base: rsc.Base) -> Iterator[Finding]:
     for enum in of_kind(rsc.EnumDataType, base.definitions):
         yield from _enum(enum)
     yield from _requirements(base)
-    for statement in statements(rsc.ProvideStatement, base):
-        yield from _provide(statement)
+    for statement in statements(rsc.DataStatement, base):
+        yield from _data(statement)
     for named in statements(rsc.NamedExpression, base):
         yield from _named(named)
     for computed in _computed(base):
@@ -160,13 +160,17 @@ def _enum(enum: rsc.EnumDataType) -> Iterator[Finding]:
         yield from _boolean(alternative.condition, "the condition of an enum rule", place)
 
 
-def _provide(statement: rsc.ProvideStatement) -> Iterator[Finding]:
+def _data(statement: rsc.DataStatement) -> Iterator[Finding]:
     communication = communication_of(statement.communicationType)
-    check = ExpressionCheck(_PROVIDE)
+    is_limit = isinstance(statement, rsc.LimitStatement)
+    place = Place(value_type_in(statement)) if is_limit else _PROVIDE
+    check = ExpressionCheck(place)
     what = f"the data of `{communication.name}`" if communication else "the data"
     check.expect_data(statement.data, provided_data_type(communication), what)
     yield from check.findings
-    yield from _boolean(statement.condition, "the condition of a provide statement", _PROVIDE)
+    yield from _boolean(
+        statement.condition, f"the condition of a {'limit' if is_limit else 'provide statement'}", place
+    )
 
 
 def _transition(transition: rsc.Transition) -> Iterator[Finding]:

@@ -338,7 +338,7 @@ def _constants(base: Meaning) -> Iterator[tuple[ex.Expression | None, rsc.DataTy
             assigned = assigned_variable(assignment)
             if assigned is not None:
                 yield assignment.value, assigned.type, assigned.name
-    for statement in statements(rsc.ProvideStatement, base):
+    for statement in statements(rsc.DataStatement, base):
         communication = communication_of(statement.communicationType)
         if communication is not None:
             yield from _provided(statement.data, sent_type(communication), communication.name)

@@ -135,7 +135,7 @@ def unique_property(base: rsc.Base) -> Iterator[Finding]:
     for definition in of_kind(rsc.ObjectDataType, base.definitions):
         for second, first in _repeated(definition.properties):
             yield _declared_again("property", second, first, f"object `{definition.name}`")
-    for statement in statements(rsc.ProvideStatement, base):
+    for statement in statements(rsc.DataStatement, base):
         for _, value in tree(statement):
             if isinstance(value, rsc.ObjectValue):
                 yield from _provided_again(value)

@@ -138,11 +138,12 @@ def _readers(base: rsc.Base) -> Iterator[Finding]:
         for transition, _ in instance.transitions:
             if isinstance(transition, rsc.TauTransition) and transition.guard is not None:
                 yield from _reading(transition.guard, known.expanded(transition.guard, instance), "a guard")
-    for statement in known.statements(rsc.ProvideStatement):
+    for statement in known.statements(rsc.DataStatement):
         condition = statement.element.condition
         if condition is not None:
             expanded = known.expanded(condition, statement.within)
-            yield from _reading(condition, expanded, "the condition of a provide statement")
+            what = "a limit" if isinstance(statement.element, rsc.LimitStatement) else "a provide statement"
+            yield from _reading(condition, expanded, f"the condition of {what}")
     for assumed in known.statements(rsc.Assumption):
         condition = assumed.element.condition
         if condition is not None:

@@ -10,7 +10,7 @@ from robosc.language.checks.rule import Finding, rule
 from robosc.model import robosc as rsc
 from robosc.model.semantics.communication import sending_event
 from robosc.model.semantics.naming import escape_keyword
-from robosc.model.semantics.typing import NONE, provided_data_type
+from robosc.model.semantics.typing import NONE, UNKNOWN, provided_data_type
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -29,7 +29,8 @@ def _as_incoming(communication: rsc.CommunicationType) -> Replacement:
 
 @rule("data-provisioning")
 def data_provisioning(base: rsc.Base) -> Iterator[Finding]:
-    """Each `provide` names a communication that the controller sends with data."""
+    """Each `provide` names a communication that the controller sends with data, each `limit` a message of these."""
+    yield from _limits(base)
     for statement in statements(rsc.ProvideStatement, base):
         communication = communication_of(statement.communicationType)
         if communication is not None and sending_event(communication) is None:
@@ -50,6 +51,27 @@ def data_provisioning(base: rsc.Base) -> Iterator[Finding]:
                 f"data is provided to `{communication.name}`, expected none: {what} is declared with the type `none`",
                 Removal("leave the provide statement out: it has no data to send", statement),
             )
+
+
+def _limits(base: rsc.Base) -> Iterator[Finding]:
+    for limit in statements(rsc.LimitStatement, base):
+        communication = communication_of(limit.communicationType)
+        is_message = isinstance(communication, rsc.Message)
+        if communication is None or (is_message and provided_data_type(communication) not in {NONE, UNKNOWN}):
+            continue
+        if not is_message:
+            why = f"the {communication.eClass.name.lower()} `{communication.name}`"
+        elif sending_event(communication) is None:
+            why = f"`{communication.name}`, which the controller receives"
+        elif provided_data_type(communication) == NONE:
+            why = f"`{communication.name}`, which is declared with the type `none`"
+        else:
+            continue
+        yield Finding(
+            limit.communicationType,
+            f"a limit changes the data of {why}, expected an incoming message with data",
+            Removal("leave the limit out", limit),
+        )
 
 
 @rule("requirement-target")

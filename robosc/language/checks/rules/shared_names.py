@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from robosc.base.diagnostics import Severity
 from robosc.language.checks.libraries import instances
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from robosc.model import expression as ex
-    from robosc.model.semantics.instances import Instance, Instances, PortInstance
+    from robosc.model.semantics.instances import Instance, Instances, PortInstance, Statement
 
 
 @rule("topic-types")
@@ -73,9 +73,10 @@ def indistinct_commands(base: rsc.Base) -> Iterator[Finding]:
 
 
 def _statements(port: PortInstance, known: Instances) -> tuple[tuple[str, str], ...]:
-    """Return the data and the condition of each effective `provide` for a command, with names expanded."""
+    """Return the data and the condition of each effective `provide` and `limit` for a command, with names expanded."""
     statements = []
-    for statement in known.provide_statements(port):
+    effective: list[Statement[Any]] = [*known.provide_statements(port), *known.limits(port)]
+    for statement in effective:
         data, condition = statement.element.data, statement.element.condition
         shown = _shown(data, statement.within, known) if data is not None else ""
         statements.append((shown, "" if condition is None else _shown(condition, statement.within, known)))

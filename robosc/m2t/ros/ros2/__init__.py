@@ -124,7 +124,7 @@ class Ros2:
     def layer(self, layer: LayerNode, configuration: Configuration, used: UsedPackages) -> LayerValues:
         """Return the template values of a layer; see `Middleware`."""
         types = {*used.types, *(["action_msgs"] if layer.node.actions else [])}
-        hands_on = layer.instead and layer.node.hands_on
+        hands_on = (layer.instead or layer.node.limited) and layer.node.hands_on
         libraries = ["rclcpp", *(["rosidl_typesupport_introspection_cpp"] if hands_on else [])]
         started = {"launch", "launch_ros", *controller_package(configuration)}
         return LayerValues(

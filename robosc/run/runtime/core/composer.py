@@ -1,20 +1,22 @@
-"""Data of messages, requests and goals, from `provide` statements."""
+"""Data of messages, requests and goals, from `provide` statements and limits."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from copy import deepcopy
+from dataclasses import dataclass, field
 from functools import reduce
 from typing import TYPE_CHECKING
 
 from robosc.model import rosgraph
-from robosc.model.semantics.messages import holds_objects, parts_with_headers
+from robosc.model.semantics.messages import doubles_read, holds_objects, parts_with_headers
 from robosc.run.runtime.core.event_log import nest
-from robosc.run.runtime.core.node_data import fill, hand_on, within_range
+from robosc.run.runtime.core.node_data import fill, hand_on, require_finite, within_range
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from robosc.base.ros_types import Section
+    from robosc.model.semantics.messages import Path
     from robosc.run.runtime.core.json_text import Json
     from robosc.run.runtime.core.node_data import NodeData
     from robosc.run.runtime.core.port import ControllerPort, Message
@@ -26,6 +28,8 @@ class Composer:
 
     port: ControllerPort
     data: NodeData
+    #: Paths of the doubles that the limits of a message read.
+    _doubles: dict[rosgraph.Sending, list[Path]] = field(default_factory=dict)
 
     def default(
         self, sending: rosgraph.Sending, interface: rosgraph.Interface, section: Section, frame: str
@@ -39,25 +43,63 @@ class Composer:
     def compose(
         self, sending: rosgraph.Sending, interface: rosgraph.Interface, section: Section, frame: str
     ) -> tuple[Message, Mapping[str, Json] | None]:
-        """Return the data of the `provide` statement that holds, else defaults, and the data for the event log.
+        """Return the data that goes out, and the data for the event log.
 
-        Raises NotFiniteError or UnreadableError if the data can't be sent.
+        The data of the `provide` statement that holds, else defaults; then the limits change it. Its numbers are as the
+        fields hold them. Raises NotFiniteError or UnreadableError if it can't be sent.
         """
         message = self.default(sending, interface, section, frame)
-        fields: dict[tuple[str, ...], Json] = {}
+        fields: dict[Path, Json] = {}
         alternatives = sending.alternatives
         chosen = next((data for data in alternatives if self.data.is_in(data.location)), None)
-        assignments = [
-            field
-            for field in (chosen.fields if chosen is not None else ())
-            if field.condition is None or self.data.value(field.condition)
-        ]
-        values = [within_range(self.data.value(field.value), field.type) for field in assignments]
-        for field, value in zip(assignments, values, strict=True):
-            if isinstance(field.value, rosgraph.WireAccess) and holds_objects(field.type):
-                hand_on(self.port, message, field.path, value)
-                continue
-            fields[tuple(field.path)] = fill(self.port, message, field.path, value)
-        if not alternatives:
+        if chosen is not None:
+            self._assign(chosen.fields, message, None, fields)
+        self._limit(sending, message, fields)
+        if not alternatives and not sending.limits:
             return message, None
         return message, {"value": fields["data",] if list(fields) == [("data",)] else nest(fields)}
+
+    def limited(self, sending: rosgraph.Sending, message: Message) -> Message:
+        """Return the data of a message after its limits.
+
+        Raises NotFiniteError or UnreadableError if the limits can't be computed.
+        """
+        if sending.limits:
+            message = deepcopy(message)
+            self._limit(sending, message, {})
+        return message
+
+    def _limit(self, sending: rosgraph.Sending, message: Message, fields: dict[Path, Json]) -> None:
+        if sending not in self._doubles:
+            self._doubles[sending] = doubles_read(sending)
+        for path in self._doubles[sending]:
+            require_finite(message, path)
+        for limit in sending.limits:
+            if limit.condition is None or self.data.value(limit.condition, message):
+                self._assign(limit.fields, message, deepcopy(message), fields)
+
+    def _assign(
+        self,
+        assignments: Sequence[rosgraph.FieldAssignment],
+        message: Message,
+        before: Message,
+        fields: dict[Path, Json],
+    ) -> None:
+        """Change fields of a message and note their values by path, except those of objects.
+
+        `before` is the data that the values may read.
+        """
+        chosen = [
+            assigned
+            for assigned in assignments
+            if assigned.condition is None or self.data.value(assigned.condition, before)
+        ]
+        values = [within_range(self.data.value(assigned.value, before), assigned.type) for assigned in chosen]
+        for assigned, value in zip(chosen, values, strict=True):
+            path = tuple(assigned.path)
+            if isinstance(assigned.value, rosgraph.WireAccess) and holds_objects(assigned.type):
+                hand_on(self.port, message, path, value)
+                for inside in [known for known in fields if known[: len(path)] == path]:
+                    del fields[inside]
+            else:
+                fields[path] = fill(self.port, message, path, value)

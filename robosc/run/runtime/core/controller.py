@@ -12,14 +12,13 @@ from robosc.engine import Settings as LoopSettings
 from robosc.language.configuration import NO_STOP, NO_STOP_ON_SILENCE
 from robosc.language.configuration.parameters import topic_words, watchdog
 from robosc.model.semantics.messages import paths_set
-from robosc.model.semantics.operators import UnreadableError
 from robosc.model.semantics.roles import event_name, plant_of
 from robosc.run.runtime.core.cancel_requests import GoalTimes
 from robosc.run.runtime.core.clients import ActionClient, Answers, ServiceClient
 from robosc.run.runtime.core.composer import Composer
 from robosc.run.runtime.core.event_handler import EventHandler
 from robosc.run.runtime.core.monitors import OTHER_TYPE, GraphMonitor, Watchdog
-from robosc.run.runtime.core.node_data import NotFiniteError
+from robosc.run.runtime.core.node_data import UNSENDABLE, NotFiniteError, why_unsendable
 from robosc.run.runtime.core.settings import SafeMessages
 from robosc.run.runtime.core.times import RESOLUTION_MS
 
@@ -303,12 +302,11 @@ class Controller(EventHandler):
             sender.message, sender.logged = self._composer.compose(
                 sender.sending, sender.interface, sender.section, sender.frame
             )
-        except (NotFiniteError, UnreadableError) as fault:
+        except UNSENDABLE as fault:
             event = sender.sending.event
             word = plant_of(event).name.partition("_")[2]
             path = str(fault) if isinstance(fault, NotFiniteError) else ""
-            why = f"its {path} would not be finite" if path else str(fault)
-            self._warn((event_name(event), path), f"{word} is withheld: {why}")
+            self._warn((event_name(event), path), f"{word} is withheld: {why_unsendable(fault)}")
             return False
         return True
 

@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING
 from robosc.base.ros_types import Section
 from robosc.engine import Settings as LoopSettings
 from robosc.model import engine, rosgraph
-from robosc.model.semantics.operators import UnreadableError
 from robosc.model.semantics.roles import event_name, plant_of
 from robosc.run.runtime.core.composer import Composer
 from robosc.run.runtime.core.event_handler import EventHandler
 from robosc.run.runtime.core.json_text import Json, json_text
-from robosc.run.runtime.core.node_data import NotFiniteError
+from robosc.run.runtime.core.node_data import UNSENDABLE, why_unsendable
 from robosc.run.runtime.core.settings import SafeMessages
 from robosc.run.runtime.core.times import RESOLUTION_MS
 
@@ -22,7 +21,7 @@ if TYPE_CHECKING:
     from robosc.model import sct
     from robosc.model.semantics.component_parts import Parts
     from robosc.run.runtime.core.event_loop import EventLoop
-    from robosc.run.runtime.core.port import ControllerPort
+    from robosc.run.runtime.core.port import ControllerPort, Message
     from robosc.run.runtime.core.settings import Settings
 
 
@@ -73,7 +72,7 @@ class Layer(EventHandler):
     # From the controller
 
     def passes(self, sending: rosgraph.Sending) -> bool:
-        """Perform the event of a controller's message and return True; report it as blocked if it is not allowed."""
+        """Perform the event of a controller's command and return True; report it as blocked if it is not allowed."""
         with self._times:
             if not self._violations.stopped and self._control.perform(event_name(sending.event)):
                 self._control.settle()
@@ -82,14 +81,28 @@ class Layer(EventHandler):
                 return True
         if self._violations.stopped:
             texts = [assumption.text or assumption.name for assumption in self._violations.assumptions]
-            self._report_blocked(sending.event, "assumption", texts)
+            self._block(sending, "assumption", texts)
         else:
             reason = self._blocking.reason(sending.event)
-            self._report_blocked(sending.event, reason.kind, reason.because)
+            self._block(sending, reason.kind, reason.because)
+        return False
+
+    def forwarded(self, sending: rosgraph.Sending, message: Message) -> Message | None:
+        """Return a controller's message with its limits if it passes; report it as blocked and return None if not."""
+        try:
+            limited = self._composer.limited(sending, message)
+        except UNSENDABLE as fault:
+            if not self._violations.stopped:
+                self._block(sending, "data", [why_unsendable(fault)])
+                return None
+        return limited if self.passes(sending) else None
+
+    def _block(self, sending: rosgraph.Sending, reason: str, because: Sequence[str]) -> None:
+        """Report a blocked command, and send the message of `on_blocked` in its place."""
+        self._report_blocked(sending.event, reason, because)
         if sending in self._forwarded:
             self._forwarded.remove(sending)
             self._send_instead(sending)
-        return False
 
     def _halt(self) -> None:
         """Cancel running goals, and send the messages of `on_blocked`."""
@@ -111,8 +124,8 @@ class Layer(EventHandler):
         target = sending, publisher.interface, Section.MESSAGE, frame
         try:
             message, logged = self._composer.compose(*target)
-        except (NotFiniteError, UnreadableError) as fault:
-            why = f"its {fault} would not be finite" if isinstance(fault, NotFiniteError) else str(fault)
+        except UNSENDABLE as fault:
+            why = why_unsendable(fault)
             self._warn((sending, why), f"{sending.name} is sent with default data: {why}")
             message, logged = self._composer.default(*target), None
         self._composer.port.publish(publisher, message)

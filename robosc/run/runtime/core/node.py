@@ -136,7 +136,7 @@ class RunningNode(ControllerPort, ABC):
         for publisher in self._graph.publishers:
             (sending,) = publisher.sendings
             self._publishers[publisher] = self._relay(
-                publisher, self.inside(publisher.topic), publisher.topic, partial(_allowed, layer, sending)
+                publisher, self.inside(publisher.topic), publisher.topic, partial(layer.forwarded, sending)
             )
         for service in self._graph.serviceClients:
             self._clients[service] = self._service_client(service)
@@ -231,9 +231,12 @@ class RunningNode(ControllerPort, ABC):
         element: rosgraph.Subscription | rosgraph.Publisher,
         source: str,
         target: str,
-        passes: Callable[[Message], bool],
+        forwarded: Callable[[Message], Message | None],
     ) -> Any:
-        """Forward messages from one topic to another if `passes` returns True; return the publisher of the target."""
+        """Forward messages from one topic to another, as `forwarded` returns them; return the publisher of the target.
+
+        None is not forwarded.
+        """
 
     @abstractmethod
     def serve(self, kind: Any, name: str, called: Callable[[Message, Any], None]) -> None:
@@ -298,10 +301,6 @@ class RunningNode(ControllerPort, ABC):
         return [*self._graph.subscriptions, *self._graph.publishers]
 
 
-def _forwarded(layer: Layer, topic: rosgraph.Subscription, message: Message) -> bool:
+def _forwarded(layer: Layer, topic: rosgraph.Subscription, message: Message) -> Message:
     layer.receive(topic, message)
-    return True
-
-
-def _allowed(layer: Layer, sending: rosgraph.Sending, _: Message) -> bool:
-    return layer.passes(sending)
+    return message

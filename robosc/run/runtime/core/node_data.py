@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from robosc.base.ros_types.wire import INTEGER_RANGES
 from robosc.model import expression as ex
 from robosc.model import rosgraph, sct
-from robosc.model.semantics.evaluation import Program, Value, as_double, saturate
-from robosc.model.semantics.messages import first_value
+from robosc.model.semantics.evaluation import Program, Value, as_double, saturate, single_precision
+from robosc.model.semantics.messages import EACH, first_value
 from robosc.model.semantics.operators import UnreadableError
 
 if TYPE_CHECKING:
@@ -167,7 +167,8 @@ class NodeData:
         """Return the value of a reference; `context` is the element that it reads, its indices, and the data."""
         match reference:
             case rosgraph.NodeVariableReference():
-                return self.variables[reference.variable]
+                value = self.variables[reference.variable]
+                return single_precision(value) if reference.single and isinstance(value, float) else value
             case rosgraph.WireAccess():
                 return self.leaf(self._reach(reference, *context), reference.type)
             case rosgraph.ConversionCall():
@@ -259,6 +260,32 @@ class NotFiniteError(Exception):
 
     def __init__(self, path: Sequence[str]) -> None:
         super().__init__(".".join(path))
+
+
+#: Faults of data that cannot be sent.
+UNSENDABLE = (NotFiniteError, UnreadableError)
+
+
+def why_unsendable(fault: NotFiniteError | UnreadableError) -> str:
+    """Return why data cannot be sent, without the name of the command."""
+    return f"its {fault} would not be finite" if isinstance(fault, NotFiniteError) else str(fault)
+
+
+def require_finite(data: Any, path: Sequence[str], start: int = 0) -> None:
+    """Raise NotFiniteError if a double at a path of a message is not finite. A missing element counts as finite."""
+    for index, step in enumerate(path[start:], start):
+        if step == EACH:
+            for element in data:
+                require_finite(element, path, index + 1)
+            return
+        if step.isdigit():
+            if int(step) >= len(data):
+                return
+            data = data[int(step)]
+        else:
+            data = getattr(data, step)
+    if not math.isfinite(data):
+        raise NotFiniteError([step for step in path if step != EACH])
 
 
 def fill(port: ControllerPort, message: Message, path: Sequence[str], value: Value) -> Json:

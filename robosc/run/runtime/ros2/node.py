@@ -260,11 +260,11 @@ class Ros2Node(RunningNode):
         element: rosgraph.Subscription | rosgraph.Publisher,
         source: str,
         target: str,
-        passes: Callable[[Message], bool],
+        forwarded: Callable[[Message], Message | None],
     ) -> _Relay:
         sent = quality.forwarding(element.topic, self._configuration)
         route = _Route(self._types[element.interface], source, target, self._reception(element), sent)
-        return _Relay(self.node, self._durabilities, route, passes)
+        return _Relay(self.node, self._durabilities, route, forwarded)
 
     def type_name(self, interface: rosgraph.Interface) -> str:
         return f"{interface.package}/{FOLDERS[interface.kind.name]}/{interface.type}"
@@ -468,17 +468,17 @@ def _keeps(quality: Any) -> bool:
 
 
 class _Relay:
-    """Forward messages from one topic to another if `passes` returns True.
+    """Forward messages from one topic to another, as `forwarded` returns them; None is not forwarded.
 
     The publisher is reliable, and transient-local if all publishers of the source are.
     """
 
     def __init__(
-        self, node: Any, durabilities: _Durabilities, route: _Route, passes: Callable[[Message], bool]
+        self, node: Any, durabilities: _Durabilities, route: _Route, forwarded: Callable[[Message], Message | None]
     ) -> None:
         self._node = node
         self._route = route
-        self._passes = passes
+        self._forwarded = forwarded
         self._lasting = False
         self._subscription: Any = None
         self._publisher = node.create_publisher(route.kind, route.target, _qos(route.sent))
@@ -497,8 +497,9 @@ class _Relay:
         self._subscription = node.create_subscription(route.kind, route.source, self._forward, _qos(received))
 
     def _forward(self, message: Message) -> None:
-        if self._passes(message):
-            self.publish(message)
+        forwarded = self._forwarded(message)
+        if forwarded is not None:
+            self.publish(forwarded)
 
     def publish(self, message: Message) -> None:
         """Send a message to the subscribers of the forwarded topic."""

@@ -12,8 +12,8 @@ namespace robosc {
 inline namespace ROBOSC_VERSION {
 
 /// The causes of a blocked command. Only the first kind that has any is reported: another execution that has not ended
-/// (busy), violated assumptions, failed requirements, states without a transition for the command, or else consequences
-/// that synthesis prevents.
+/// (busy), violated assumptions, data that cannot be sent, failed requirements, states without a transition for the
+/// command, or else consequences that synthesis prevents.
 class BlockReasons {
  public:
   static BlockReasons busy() {
@@ -28,6 +28,12 @@ class BlockReasons {
     return reasons;
   }
 
+  static BlockReasons unsendable(const std::string& why) {
+    BlockReasons reasons;
+    reasons.data_ = {why};
+    return reasons;
+  }
+
   void add_requirement(const std::string& text) { requirements_.push_back(text); }
 
   void add_state(const std::string& text) { states_.push_back(text); }
@@ -36,6 +42,7 @@ class BlockReasons {
 
   const char* kind() const {
     if (!assumptions_.empty()) return "assumption";
+    if (!data_.empty()) return "data";
     return busy_ ? "busy" : !requirements_.empty() ? "requirement" : !states_.empty() ? "state" : "synthesis";
   }
 
@@ -74,11 +81,13 @@ class BlockReasons {
  private:
   const std::vector<std::string>& told() const {
     if (!assumptions_.empty()) return assumptions_;
+    if (!data_.empty()) return data_;
     return !requirements_.empty() ? requirements_ : !states_.empty() ? states_ : consequences_;
   }
 
   bool busy_ = false;
   std::vector<std::string> assumptions_;
+  std::vector<std::string> data_;
   std::vector<std::string> requirements_;
   std::vector<std::string> states_;
   std::vector<std::string> consequences_;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <map>
 #include <string>
 #include <type_traits>
 
@@ -63,11 +64,14 @@ class FieldWriter {
     note(path, list);
   }
 
-  /// Sets a field, or the whole data, to received data. Records no JSON.
+  /// Sets a field, or the whole data if the path is empty, to received data. Records no JSON.
   template <typename Field, typename Data>
   void hand_on(const char* path, Field& field, const Data& data) {
     store(field, data);
-    if (!all_finite(field) && fault_ == nullptr) fault_ = path;
+    if (!all_finite(field) && fault_ == nullptr) fault_ = *path == '\0' ? "data" : path;
+    const std::string inside = *path == '\0' ? "" : std::string(path) + '.';
+    auto noted = fields_.lower_bound(inside);
+    while (noted != fields_.end() && noted->first.compare(0, inside.size(), inside) == 0) noted = fields_.erase(noted);
   }
 
   template <typename Field, typename Value>
@@ -85,12 +89,22 @@ class FieldWriter {
     }
   }
 
+  /// Requires a value of the message to be finite.
+  template <typename Value>
+  void require(const char* path, const Value& value) {
+    check(path, static_cast<double>(value));
+  }
+
   /// The path of the first field whose value is not finite. Null if there is none.
   const char* fault() const { return fault_; }
 
   /// The recorded fields as in the message. For basic data, the value itself.
   friend std::string to_json(const FieldWriter& writer) {
-    return writer.fields_ == 1 && !writer.basic_.empty() ? writer.basic_ : to_json(writer.tree_);
+    const auto first = writer.fields_.find("data");
+    if (writer.fields_.size() == 1 && first != writer.fields_.end()) return first->second.json;
+    JsonTree tree;
+    for (const auto& [path, noted] : writer.fields_) tree.add(path, noted);
+    return to_json(tree);
   }
 
  private:
@@ -142,17 +156,18 @@ class FieldWriter {
 
   template <typename Value>
   void note(const char* path, const Value& value) {
-    if (!noted_) return;
-    ++fields_;
-    tree_.add(path, value);
-    if (std::string(path) == "data") basic_ = to_json(value);
+    if (noted_) fields_[path] = {to_json(value)};
   }
+
+  /// JSON of a field.
+  struct Noted {
+    std::string json;
+    friend std::string to_json(const Noted& noted) { return noted.json; }
+  };
 
   bool noted_;
   const char* fault_ = nullptr;
-  JsonTree tree_;
-  std::string basic_;
-  int fields_ = 0;
+  std::map<std::string, Noted> fields_;  // By path. So those of one object are together.
 };
 
 }  // namespace ROBOSC_VERSION
