@@ -606,12 +606,12 @@ def test_layer(tmp_path: Path) -> None:
     bench = Bench(tmp_path, ["velocity"])
     (action,), velocity = bench.graph.actionClients, find_message(bench.graph, "velocity")
     assert velocity is not None
-    assert bench.layer.passes(action.request)
+    assert bench.layer.forwarded(action.request, Record()) is not None
     opened = next(each for each in bench.graph.subscriptions if each.topic == "/opened")
     bench.layer.receive(opened, Record())  # the node behind it forwards the message itself
     assert bench.cancels >= 1
     assert [topic for topic, _ in bench.port.sent] == ["/velocity"]
-    assert not bench.layer.passes(velocity)
+    assert bench.layer.forwarded(velocity, Record()) is None
     blocked = json.loads([text for name, text in bench.port.told if name == "blocked"][-1])
     assert (blocked["reason"], blocked["because"]) == ("assumption", ["assume A3: opened needs Base.parked"])
 

@@ -156,7 +156,9 @@ def blocking_counterexample(system: SynthesizedSystem, event: sct.Event, way: Pa
     encoding, relation = system.encoding, system.relations[event]
     step = relation.step
     assert step is not None  # else the event would change nothing and could not lead to blocking
-    after = pick(step.image(system.last(way)), encoding.layout.state)
+    targets = step.image(system.last(way))
+    removed = targets & ~system.solution.rounds[-1]  # The data of a command choose among several targets.
+    after = pick(removed if removed.satisfiable() else targets, encoding.layout.state)
     onwards = unavoidable(system, after)
     end = onwards.states[-1]
     unmarked = [plant for plant in system.model.plants if not plant.locations[end[plant]].marked]

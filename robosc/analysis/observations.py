@@ -251,7 +251,7 @@ class Observer:
             return self._system.stranded(requirement)
         assert isinstance(requirement, sct.Requirement)
         relation = self._system.relations[requirement.event]
-        return self._system.controlled & relation.enabled & ~relation.permissions[requirement]
+        return self._system.controlled & relation.forbidden_by(requirement)
 
     def _never_enabled(self) -> Iterator[NeverEnabled]:
         controlled, uncontrolled = self._system.controlled, self._system.uncontrolled
@@ -297,7 +297,7 @@ class Observer:
             permission = self._permissions.get(relation.event)
             if permission is None or system.is_in(way.states[number], permission.allowed):
                 continue
-            here = self._held_back(permission) & system.encoding.state(way.states[number])
+            here = permission.held_back & system.encoding.state(way.states[number])
             if here.satisfiable():
                 return replace(observation, counterexample=self._counterexample(permission, here))
             permissions = relation.permissions.items()
@@ -445,12 +445,13 @@ class Observer:
             return Hindrance(edge, None)
         relation = self._system.relations[edge.event]
         own = relation.states_taking([edge])
-        enabled = here & relation.enabled & own
+        taken = self._system.encoding.holds(edge.guard) if relation.has_data else own
+        enabled = here & own & relation.allowed_by(taken)
         if not (here & own).satisfiable():
             return Hindrance(edge, Forbidden.BY_PLANTS, plants=(edge.target.eContainer(),))
         if not enabled.satisfiable():
             return Hindrance(edge, Forbidden.BY_PLANTS, plants=never_ready(relation, here))
-        if not (enabled & relation.requirement).satisfiable():
+        if not (enabled & relation.allowed_by(taken & relation.permitted)).satisfiable():
             return Hindrance(edge, Forbidden.BY_REQUIREMENTS, requirements=requirements_at_fault(relation, enabled))
         return Hindrance(
             edge, Forbidden.BY_SYNTHESIS, counterexample=self._counterexample(self._permissions[edge.event], here & own)
@@ -473,7 +474,7 @@ class Observer:
         for event, permission in self._permissions.items():
             if permission.guard.synthesis is None:
                 continue
-            goal = self._held_back(permission)
+            goal = permission.held_back
             known = self._counterexamples.get((event, goal))
             way = None if known or taken > _STEPS else self._system.layers.path_to(goal, _EFFORT)
             counterexample = known or (way and blocking_counterexample(self._system, event, way))
@@ -483,7 +484,7 @@ class Observer:
 
     def _counterexample(self, permission: Permission, where: Diagram | None = None) -> BlockingCounterexample:
         """Return the counterexample that holding back the event prevents in some of these states. Cached."""
-        goal = self._held_back(permission)
+        goal = permission.held_back
         if where is not None:
             goal &= where
         event = permission.relation.event
@@ -491,11 +492,6 @@ class Observer:
             way = self._system.path_to(goal)
             self._counterexamples[event, goal] = blocking_counterexample(self._system, event, way)
         return self._counterexamples[event, goal]
-
-    def _held_back(self, permission: Permission) -> Diagram:
-        """Return the controlled states in which only synthesis forbids the event."""
-        relation = permission.relation
-        return self._system.controlled & (relation.enabled & relation.requirement & ~permission.where)
 
 
 def _server(plant: sct.Plant) -> str:

@@ -206,7 +206,10 @@ class _RoboscToRosgraph:
             alternative.fields.extend(self.fields(provided.data, translate, lone, port.instance.data_type(sent)))
             sending.alternatives.append(alternative)
         if (port, event) in self.inputs:
-            sending.inputs.extend(self.input_assignments(port, event, self.value_of(port, event)))
+            assert event.section is not None
+            for assignment in self.input_assignments(port, event, self.value_of(port, event)):
+                round_constants(assignment, self.interface(port.communication), event.section, self.known)
+                sending.inputs.append(assignment)
         sending.limits.extend(self.limit(statement, port, event) for statement in self.instances.limits(port))
         return sending
 

@@ -37,6 +37,14 @@ class Permission:
     unwritten: bool = False
 
     @cached_property
+    def held_back(self) -> Diagram:
+        """Controlled states in which only synthesis forbids the event, or some of its data."""
+        relation = self.relation
+        if not relation.has_data:
+            return self.controlled & (relation.enabled & relation.requirement & ~self.where)
+        return self.controlled & relation.allowed_by(relation.permitted & ~relation.leading_to(self.controlled))
+
+    @cached_property
     def allowed(self) -> Diagram:
         """Controlled states in which the event is allowed."""
         return self.controlled & self.where

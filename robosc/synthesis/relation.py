@@ -175,6 +175,12 @@ class EventRelation:
     def _all_of(self, diagrams: Iterable[Diagram]) -> Diagram:
         return self._encoding.diagrams.all_of(diagrams)
 
+    def forbidden_by(self, requirement: sct.Requirement) -> Diagram:
+        """Return the states in which the plants enable the event and a requirement forbids it, with some inputs."""
+        if not self.has_data:
+            return self.enabled & ~self.permissions[requirement]
+        return and_exists(self.happens, ~self.condition_of(requirement), self.inputs)
+
     def condition_of(self, requirement: sct.Requirement) -> Diagram:
         """Return the states in which a requirement allows the event, and the inputs if it is a command with data."""
         return self._encoding.permits(requirement) if self.has_data else self.permissions[requirement]

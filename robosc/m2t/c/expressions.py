@@ -63,6 +63,8 @@ class CPrinter(Printer):
 
     #: Prefix of the name of a state member.
     state = "state->"
+    #: Prefix of the name of an input.
+    inputs = "inputs->"
 
     def __init__(self, names: CNames) -> None:
         self._names = names
@@ -99,7 +101,7 @@ class CPrinter(Printer):
             case engine.VariableReference():
                 return f"{'old.' if expression.before else self.state}{self._names.of(expression.variable)}"
             case engine.InputReference():
-                return f"inputs->{self._names.of(expression.input)}"
+                return f"{self.inputs}{self._names.of(expression.input)}"
             case engine.ConditionReference():
                 return f"{expression.condition.name}(state)"
             case engine.LocationLiteral():

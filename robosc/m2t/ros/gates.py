@@ -80,6 +80,7 @@ class _Printer(CPrinter):
     """Prints conditions on the state of the node's supervisor in C++."""
 
     state = "supervisor_.state."
+    inputs = "supervisor_.inputs."
 
     def __init__(self, names: CppNames) -> None:
         super().__init__(names.c)

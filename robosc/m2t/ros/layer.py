@@ -29,8 +29,9 @@ class LayerNode:
         messages += [client.request for client in self.node.clients]
         #: Gates of the controller's commands, by the enumerator of the event.
         self.gates = {gate.event: gate for gate in gates}
-        #: Events of messages with limits.
-        self.limited = {message.event for _, message in node.limited}
+        #: Events of commands whose data the layer limits, or with which the supervisor decides.
+        self.decided = {message.event for _, message in node.decided}
+        self.examined = {message.event for _, message in [*node.limited, *node.decided]}
         #: Messages that replace blocked ones, by the enumerator of the event.
         self.instead = {last.message.event: last for last in node.on_blocked}
         #: Events of the controller and internal events that change the node's own data.

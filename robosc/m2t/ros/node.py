@@ -139,7 +139,8 @@ class Message:
     `on_change` are the fields to compare if the message is sent only on change. Sending may fail if a double may not be
     finite, or if the message `reads_elements` of arrays. `reaction` are the changes in the node. `parts` are those that
     may hold headers for the node to fill in; "" is the whole message. `limits` change the data; they read `before`, a
-    copy of it. `doubles` are statements that require the doubles that they read to be finite.
+    copy of it. `inputs` are statements that set the supervisor's inputs from the data, `message`. They may read
+    elements of arrays if `inputs_may_fail`. `doubles` are statements that require the doubles of both to be finite.
     """
 
     word: str
@@ -153,6 +154,8 @@ class Message:
     parts: list[str]
     limits: list[Limit]
     doubles: list[str]
+    inputs: list[str]
+    inputs_may_fail: bool
 
 
 @dataclass(frozen=True)
@@ -373,6 +376,21 @@ class GeneratedNode:
         return [
             (publisher, message) for publisher in self.publishers for message in publisher.messages if message.limits
         ]
+
+    @property
+    def decided(self) -> list[tuple[Publisher | Client, Message]]:
+        """Commands on which the supervisor decides with their data."""
+        sent: list[tuple[Publisher | Client, Message]] = [
+            (publisher, message) for publisher in self.publishers for message in publisher.messages
+        ]
+        sent += [(client, client.request) for client in self.clients]
+        return [(owner, message) for owner, message in sent if message.inputs]
+
+    @property
+    def examined(self) -> list[tuple[Publisher | Client, Message]]:
+        """Commands whose data a layer limits, or with which the supervisor decides."""
+        decided = [message.event for _, message in self.decided]
+        return [*((owner, message) for owner, message in self.limited if message.event not in decided), *self.decided]
 
     @property
     def reason(self) -> Reasons | None:
@@ -609,14 +627,23 @@ class GeneratedNode:
             self._names.c.enumerator(sending.event),
             self._events[sending.event].remarks,
             [self._alternative(provided) for provided in sending.alternatives],
-            reads or bool(doubles) or any(map(_may_be_infinite, fields)),
+            reads or (bool(doubles) and bool(sending.limits)) or any(map(_may_be_infinite, fields)),
             reads,
             [".".join(path) for path in paths_set(sending)] if sending.onChange else None,
             self._handler(sending.event) if sending.event in self._reactions else None,
             [".".join(path) for path in parts_with_headers(sending)],
             [self._limit(limit) for limit in sending.limits],
             [_required(path) for path in doubles],
+            [self._command_input(assignment) for assignment in sending.inputs],
+            any(reads_elements(assignment.value) for assignment in sending.inputs),
         )
+
+    def _command_input(self, assignment: rosgraph.InputAssignment) -> str:
+        """Return the statement that sets an input of a command."""
+        kind, value = assignment.input.type, self._printer(assignment.value)
+        if isinstance(kind, ex.IntegerType):
+            value = f"{self._printer.integer(assignment.value, kind)}.to<std::{type_name(kind)}>()"
+        return Assignment(f"supervisor_.inputs.{self._names.c.member(assignment.input)}", value).statement
 
     def _limit(self, limit: rosgraph.DataLimit) -> Limit:
         printer = CppPrinter(self._names, data="before")

@@ -47,7 +47,7 @@ _HEADERS = {
     "robosc/fields": {"composes"},
     "robosc/json": set(),
     "robosc/message_headers": {"composes", "defaults"},
-    "robosc/throttle": {"layer", "gates"},
+    "robosc/throttle": {"blocks"},
     "robosc/violations": {"assumptions"},
     "robosc/transitions": {"state"},
     "robosc/unheard": {"controller", "awaits"},
@@ -175,7 +175,9 @@ class RosTarget:
         into: str | None,
     ) -> dict[str, str]:
         kind, ros = self.kind, self.ros
-        commands = gates(graph, node, executed) if configuration.diagnostics_ms or kind == "layer" else {}
+        commands = gates(graph, node, executed)
+        if not configuration.diagnostics_ms and kind != "layer":
+            commands = {sending: gate for sending, gate in commands.items() if sending.inputs}
         layer = LayerNode(graph, node, commands.values(), executed) if kind == "layer" else None
         reported_statuses = statuses(graph, node, commands) if configuration.diagnostics_ms else []
         included = self._included(node, layer, reported_statuses, configuration)
@@ -190,7 +192,8 @@ class RosTarget:
             **({definition: "definition.hpp.j2"} if configuration.publish_state_information else {}),
             **(_test_files(ros, name, into) if tests else {}),
         }
-        texts_told = configuration.publish_state_information or (layer and layer.gates)
+        reports_blocked = bool(layer.gates if layer else node.decided)
+        texts_told = configuration.publish_state_information or reports_blocked
         typed = typed_state.fields(graph, CppNames(graph)) if configuration.typed_state else []
         kind_of_state = rosgraph.Interface(
             package=configuration.interfaces_name(graph), type=typed_state.MESSAGE, kind=_MESSAGE
@@ -232,6 +235,7 @@ class RosTarget:
             typed=kind_of_state if configuration.typed_state else None,
             remembers=bool(node.may_withhold and (reported_statuses or node.instead)),
             gates=list(commands.values()),
+            reports_blocked=reports_blocked,
             writes_log=configuration.write_events_to_log,
             definition=definition_text(graph),
             no_stop=_no_stop(node, configuration),
@@ -270,7 +274,8 @@ class RosTarget:
             sent = [end.interface for ends in (node.publishers, node.clients) for end in ends]
         else:
             sent = [last.publisher.interface for last in node.on_blocked]
-        composes = self.kind == "controller" or node.on_blocked or node.limited
+        composes = self.kind == "controller" or node.on_blocked or node.limited or node.decided
+        blocks = layer.gates if layer else node.decided
         defaults = any(has_defaults(interface) for interface in sent)
         present = {
             self.kind: True,
@@ -278,13 +283,14 @@ class RosTarget:
             "actions": node.actions,
             "assumptions": node.assumed,
             "awaits": _awaited(node, configuration),
+            "blocks": blocks,
             "composes": composes,
             "defaults": defaults,
-            "gates": (layer and layer.gates) or any(status.commands for status in reported_statuses),
+            "gates": blocks or any(status.commands for status in reported_statuses),
             "hands_on": node.hands_on,
             "managed": configuration.lifecycle,
             "quaternions": (composes and defaults) or _turned(node),
-            "reports": configuration.publish_state_information or reported_statuses or (layer and layer.gates),
+            "reports": configuration.publish_state_information or reported_statuses or blocks,
             "services": node.services,
             "state": configuration.publish_state_information,
             "statuses": reported_statuses,

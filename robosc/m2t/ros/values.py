@@ -51,6 +51,7 @@ class NodeValues:
     typed: rosgraph.Interface | None
     remembers: bool
     gates: Sequence[Gate]
+    reports_blocked: bool
     writes_log: bool
     definition: str
     no_stop: Sequence[tuple[str, str]]

@@ -81,6 +81,11 @@ def sent_messages(
         yield action.interface, Section.GOAL, action.request
 
 
+def decides_with_data(graph: rosgraph.RosGraph) -> bool:
+    """Return whether the supervisor decides on a command with its data."""
+    return any(sending.inputs for _, _, sending in sent_messages(graph))
+
+
 def sections(graph: rosgraph.RosGraph) -> dict[str, tuple[str, str, Section]]:
     """Return package, type and section of each event with data, by the name of the event.
 
@@ -335,9 +340,9 @@ def paths_set(sending: rosgraph.Sending) -> list[Path]:
 
 
 def doubles_read(sending: rosgraph.Sending) -> list[Path]:
-    """Return the paths of the doubles that the limits of a message read, each once."""
+    """Return the paths of the doubles that the limits and the inputs of a command read, each once."""
     paths: dict[Path, None] = {}
-    for expression in limit_expressions(sending):
+    for expression in [*limit_expressions(sending), *(assignment.value for assignment in sending.inputs)]:
         for _, part in tree(expression):
             if isinstance(part, rosgraph.WireAccess) and source_of(part) is None:
                 path, kind = path_of(part), part.type

@@ -127,8 +127,8 @@ def _read(reference: sct.InputReference, _model: Model) -> Iterator[Fault]:
     user = reference.eContainer()
     while isinstance(user, ex.Expression | sct.Update):
         user = user.eContainer()
-    if not isinstance(user, sct.Edge | sct.Requirement):
-        yield reference, "an input can be read only in guards and updates of edges, and in requirements"
+    if not isinstance(user, sct.Edge | sct.Requirement | sct.EventGuard):
+        yield reference, "an input can be read only in guards, updates of edges, and requirements"
     elif reference.input not in user.event.inputs:
         yield reference, f"'{user.event.name}' does not carry the input '{reference.input.name}'"
 

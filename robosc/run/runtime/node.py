@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.language.configuration.parameters import controller_parameters, layer_parameters
+from robosc.model.semantics.messages import decides_with_data
 from robosc.run.runtime.core.controller import Controller
 from robosc.run.runtime.core.event_log import default_log
 from robosc.run.runtime.core.layer import Layer
@@ -70,7 +71,7 @@ def _run(
         except OSError as error:
             raise StartError(f"the event log {error.filename} cannot be written: {error.strerror}") from None
         reports = ["state", "definition"] if configuration.publish_state_information else []
-        node.open_reports([*reports, "blocked"] if isinstance(handler, Layer) else reports)
+        node.open_reports([*reports, "blocked"] if isinstance(handler, Layer) or decides_with_data(graph) else reports)
         if settings.parameters.get("diagnostics_ms"):
             node.open_diagnostics()
         node.connect(handler, settings)

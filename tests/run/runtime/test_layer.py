@@ -69,7 +69,7 @@ class Bench:
         )
 
     def passes(self, name: str) -> bool:
-        return self.layer.passes(self.sending(name))
+        return self.layer.forwarded(self.sending(name), Record()) is not None
 
     def blocked(self) -> list[dict[str, Any]]:
         return [json.loads(text) for topic, text in self.port.told if topic == "blocked"]

@@ -93,9 +93,9 @@ def test_a_layer_has_them_too(tmp_path: Path) -> None:
     seen = []
     for reach, distance in ((0.6, 0.7), (1.0, 0.7), (1.0, 1.1)):
         layer.set_parameters({"reach": reach})
-        seen.append(layer.passes(move))  # by the data received so far
+        seen.append(layer.forwarded(move, Record()) is not None)  # by the data received so far
         layer.receive(topics["/range"], Record(data=distance))
-        seen.append(layer.passes(move))
+        seen.append(layer.forwarded(move, Record()) is not None)
     assert seen == [True, True, True, False, False, True]
 
 

@@ -182,14 +182,14 @@ def test_the_layer_has_timers_too(tmp_path: Path) -> None:
     layer, port, event_loop = a_layer(tmp_path / "events.jsonl")
     layer.start()
     sendings = {sending.name: sending for publisher in graph.publishers for sending in publisher.sendings}
-    assert layer.passes(sendings["halt"])
-    assert not layer.passes(sendings["move"])
+    assert layer.forwarded(sendings["halt"], Record()) is not None
+    assert layer.forwarded(sendings["move"], Record()) is None
     scan = next(topic for topic in graph.subscriptions if topic.topic == "/scan")
     for _ in range(11):
         port.time += 0.1
         event_loop.run_pending()
         layer.receive(scan, Record())
-    assert layer.passes(sendings["move"])
+    assert layer.forwarded(sendings["move"], Record()) is not None
     port.time += 0.6
     event_loop.run_pending()
-    assert not layer.passes(sendings["move"])
+    assert layer.forwarded(sendings["move"], Record()) is None

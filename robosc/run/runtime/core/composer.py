@@ -5,8 +5,9 @@ from __future__ import annotations
 from copy import deepcopy
 from dataclasses import dataclass, field
 from functools import reduce
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from robosc.model import expression as ex
 from robosc.model import rosgraph
 from robosc.model.semantics.messages import doubles_read, holds_objects, parts_with_headers
 from robosc.run.runtime.core.event_log import nest
@@ -28,7 +29,7 @@ class Composer:
 
     port: ControllerPort
     data: NodeData
-    #: Paths of the doubles that the limits of a message read.
+    #: Paths of the doubles that the limits and the inputs of a command read.
     _doubles: dict[rosgraph.Sending, list[Path]] = field(default_factory=dict)
 
     def default(
@@ -66,8 +67,14 @@ class Composer:
         """
         if sending.limits:
             message = deepcopy(message)
-            self._limit(sending, message, {})
+        self._limit(sending, message, {})
         return message
+
+    def inputs(self, sending: rosgraph.Sending, message: Message) -> dict[str, Any]:
+        """Return the inputs of a command with this data, by name. Raises UnreadableError."""
+        values = {assigned.input.name: self.data.value(assigned.value, message) for assigned in sending.inputs}
+        literals = ex.EnumerationLiteral
+        return {name: value.name if isinstance(value, literals) else value for name, value in values.items()}
 
     def _limit(self, sending: rosgraph.Sending, message: Message, fields: dict[Path, Json]) -> None:
         if sending not in self._doubles:

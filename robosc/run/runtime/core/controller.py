@@ -12,6 +12,7 @@ from robosc.engine import Settings as LoopSettings
 from robosc.language.configuration import NO_STOP, NO_STOP_ON_SILENCE
 from robosc.language.configuration.parameters import topic_words, watchdog
 from robosc.model.semantics.messages import paths_set
+from robosc.model.semantics.operators import UnreadableError
 from robosc.model.semantics.roles import event_name, plant_of
 from robosc.run.runtime.core.cancel_requests import GoalTimes
 from robosc.run.runtime.core.clients import ActionClient, Answers, ServiceClient
@@ -89,6 +90,8 @@ class Controller(EventHandler):
         self._composer = Composer(port, self._data)
         self._safe = safe or SafeMessages()
         self._withheld: set[str] = set()
+        #: Enabled commands whose data the supervisor forbids.
+        self._forbidden: set[str] = set()
         self._monitor = GraphMonitor(port, event_loop, [*graph.serviceClients, *graph.actionClients])
         awaited = {topic.removeprefix("/") for topic in settings.configuration.wait_for}
         #: Topics that commands wait for and that have not been received yet.
@@ -264,7 +267,30 @@ class Controller(EventHandler):
                 self._send_outside(self._safe.on_withheld)
             return False
         self._withheld.discard(name)
+        if sender.sending.inputs and not self._permits(sender):
+            return False
+        self._sent = sender.message
         return not (sender.sending.onChange and sender.unchanged)
+
+    def _permits(self, sender: _Sender) -> bool:
+        """Set the inputs of a command; report once that the supervisor forbids them, and return whether it allows them.
+
+        Inputs that cannot be read are not allowed.
+        """
+        engine, event = self._control.engine, sender.sending.event
+        name = event_name(event)
+        try:
+            engine.set_inputs(name, self._composer.inputs(sender.sending, sender.message))
+        except UnreadableError as fault:
+            self._warn_withheld(sender, fault)
+            return False
+        if engine.permits_inputs(name):
+            self._forbidden.discard(name)
+            return True
+        if name not in self._forbidden:
+            self._forbidden.add(name)
+            self._publish_blocked(event, "requirement", self._blocking.reason(event).because)
+        return False
 
     def _may_wait(self, event: sct.Event) -> bool:
         return event not in self.goals
@@ -276,6 +302,8 @@ class Controller(EventHandler):
             return "the node is not active"
         if self._halted:
             return "an assumption is violated" if self._violations.stopped else "a topic is silent"
+        if event_name(event) in self._forbidden:
+            return "its data is forbidden"
         return "its data cannot be sent" if event_name(event) in self._withheld else None
 
     def _faults(self, parts: Parts) -> list[str]:
@@ -303,16 +331,20 @@ class Controller(EventHandler):
                 sender.sending, sender.interface, sender.section, sender.frame
             )
         except UNSENDABLE as fault:
-            event = sender.sending.event
-            word = plant_of(event).name.partition("_")[2]
-            path = str(fault) if isinstance(fault, NotFiniteError) else ""
-            self._warn((event_name(event), path), f"{word} is withheld: {why_unsendable(fault)}")
+            self._warn_withheld(sender, fault)
             return False
         return True
+
+    def _warn_withheld(self, sender: _Sender, fault: NotFiniteError | UnreadableError) -> None:
+        event = sender.sending.event
+        word = plant_of(event).name.partition("_")[2]
+        path = str(fault) if isinstance(fault, NotFiniteError) else ""
+        self._warn((event_name(event), path), f"{word} is withheld: {why_unsendable(fault)}")
 
     def _after(self, name: str) -> None:
         # A command that is disabled is no longer withheld.
         self._withheld = {command for command in self._withheld if self._control.engine.enabled(command)}
+        self._forbidden = {command for command in self._forbidden if self._control.engine.enabled(command)}
         super()._after(name)
         for sender in self._on_change:
             if not self._control.engine.enabled(event_name(sender.sending.event)):

@@ -13,10 +13,11 @@ from robosc.model import engine, rosgraph, sct
 from robosc.model.semantics.durations import set_milliseconds
 from robosc.model.semantics.messages import received_messages, receptions
 from robosc.model.semantics.operators import UnreadableError
-from robosc.model.semantics.roles import event_name
+from robosc.model.semantics.roles import event_name, plant_of
 from robosc.run.runtime.core.blocking import Blocking
 from robosc.run.runtime.core.component_status import Own, StatusReporter
 from robosc.run.runtime.core.event_log import EventLog, ReceivedData
+from robosc.run.runtime.core.json_text import Json, json_text
 from robosc.run.runtime.core.node_data import NodeData
 from robosc.run.runtime.core.port import Failure
 from robosc.run.runtime.core.reports import StateReporter, Throttle
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
     from robosc.model import expression as ex
     from robosc.model.semantics.component_parts import Parts
     from robosc.run.runtime.core.event_loop import EventLoop
-    from robosc.run.runtime.core.json_text import Json
     from robosc.run.runtime.core.port import Client, Message, Port
     from robosc.run.runtime.core.settings import Settings
 
@@ -108,6 +108,8 @@ class EventHandler:
         self._incoming = self._of_role(engine.Role.incoming)
         #: Goals of the actions, by the event that cancels them.
         self.goals: dict[sct.Event, Goals] = {}
+        #: Data of the command that is about to happen.
+        self._sent: Message = None
         #: Message of the present event, and the event that it was received as.
         self._received: tuple[sct.Event, Message] | None = None
         self._logged = {reception.event: self._read(reception) for reception in receptions(graph)}
@@ -310,9 +312,9 @@ class EventHandler:
         self._received = None
 
     def _changes(self, event: sct.Event) -> bool:
-        """Change the node's variables for an event without data; if they can't be read, report it and return False."""
+        """Change the node's variables for an event of its own; if they can't be read, report it and return False."""
         try:
-            self._data.variables.update(self._data.receive(event).variables)
+            self._data.variables.update(self._data.receive(event, data=self._sent).variables)
         except UnreadableError as fault:
             self._warn(event, f"{event_name(event)}: {fault}")
             return False
@@ -359,6 +361,22 @@ class EventHandler:
             )
             return {**logged, **self._logged[event].reason(self._data)} or None
         return self._logged[event].read(self._data, message) if event in self._logged else None
+
+    def _publish_blocked(self, event: sct.Event, reason: str, because: Sequence[str]) -> None:
+        """Publish on `~/blocked` that a command is blocked, and warn."""
+        plant = plant_of(event)
+        name = plant.origin or plant.name
+        report: dict[str, Json] = {
+            "robot": self._graph.name,
+            "time": self._port.now(),
+            "name": name,
+            "event": event_name(event),
+            "reason": reason,
+            "because": because,
+            "components": self._reports.components(),
+        }
+        self._port.publish_report("blocked", json_text(report))
+        self._warn(event, f"{name} is blocked: {reason} {json_text(because)}")
 
     # Contents of `/diagnostics`
 

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from robosc.base.ros_types import Section
 from robosc.engine import Settings as LoopSettings
 from robosc.model import engine, rosgraph
-from robosc.model.semantics.roles import event_name, plant_of
+from robosc.model.semantics.roles import event_name
 from robosc.run.runtime.core.composer import Composer
 from robosc.run.runtime.core.event_handler import EventHandler
-from robosc.run.runtime.core.json_text import Json, json_text
 from robosc.run.runtime.core.node_data import UNSENDABLE, why_unsendable
 from robosc.run.runtime.core.settings import SafeMessages
 from robosc.run.runtime.core.times import RESOLUTION_MS
@@ -21,6 +20,7 @@ if TYPE_CHECKING:
     from robosc.model import sct
     from robosc.model.semantics.component_parts import Parts
     from robosc.run.runtime.core.event_loop import EventLoop
+    from robosc.run.runtime.core.json_text import Json
     from robosc.run.runtime.core.port import ControllerPort, Message
     from robosc.run.runtime.core.settings import Settings
 
@@ -29,7 +29,7 @@ class Layer(EventHandler):
     """Layer of a robot. It decides; others forward. It sends `on_blocked` of `safe`.
 
     Messages of the robot move the supervisor before they are forwarded (`receive`, `respond`, `fail`, `feed_back`).
-    Messages of the controller are forwarded if `passes` allows it. The proxies of actions add their `goals`.
+    Messages of the controller are forwarded if `forwarded` allows it. The proxies of actions add their `goals`.
     """
 
     def __init__(
@@ -71,10 +71,13 @@ class Layer(EventHandler):
 
     # From the controller
 
-    def passes(self, sending: rosgraph.Sending) -> bool:
+    def _passes(self, sending: rosgraph.Sending, inputs: Mapping[str, Any]) -> bool:
         """Perform the event of a controller's command and return True; report it as blocked if it is not allowed."""
+        name, engine = event_name(sending.event), self._control.engine
+        engine.set_inputs(name, inputs)
         with self._times:
-            if not self._violations.stopped and self._control.perform(event_name(sending.event)):
+            # The node's own data change only if the command happens.
+            if not self._violations.stopped and engine.permits_inputs(name) and self._control.perform(name):
                 self._control.settle()
                 if sending in self._publishers:
                     self._forwarded.add(sending)
@@ -88,14 +91,19 @@ class Layer(EventHandler):
         return False
 
     def forwarded(self, sending: rosgraph.Sending, message: Message) -> Message | None:
-        """Return a controller's message with its limits if it passes; report it as blocked and return None if not."""
+        """Return a controller's command with its limits if it passes; report it as blocked and return None if not."""
+        limited, inputs = message, dict[str, Any]()
         try:
             limited = self._composer.limited(sending, message)
+            inputs = self._composer.inputs(sending, limited)
         except UNSENDABLE as fault:
             if not self._violations.stopped:
                 self._block(sending, "data", [why_unsendable(fault)])
                 return None
-        return limited if self.passes(sending) else None
+        self._sent = limited
+        passes = self._passes(sending, inputs)
+        self._sent = None
+        return limited if passes else None
 
     def _block(self, sending: rosgraph.Sending, reason: str, because: Sequence[str]) -> None:
         """Report a blocked command, and send the message of `on_blocked` in its place."""
@@ -137,20 +145,8 @@ class Layer(EventHandler):
 
     def _report_blocked(self, event: sct.Event, reason: str, because: Sequence[str]) -> None:
         self._blocked.add(event)
-        plant = plant_of(event)
-        name = plant.origin or plant.name
-        report: dict[str, Json] = {
-            "robot": self._graph.name,
-            "time": self._port.now(),
-            "name": name,
-            "event": event_name(event),
-            "reason": reason,
-            "because": because,
-            "components": self._reports.components(),
-        }
-        self._port.publish_report("blocked", json_text(report))
+        self._publish_blocked(event, reason, because)
         self._log.write(self._port.now(), "blocked", event_name(event))
-        self._warn(event, f"{name} is blocked: {reason} {json_text(because)}")
 
     def _faults(self, parts: Parts) -> list[str]:
         blocked = [f"{sending.name} was blocked" for sending in parts.commands if sending.event in self._blocked]

@@ -40,7 +40,7 @@ class ServiceProxy:
         if self._waiting is not None:
             self._layer.reject(self._service.request)
             answer.give()
-        elif not self._layer.passes(self._service.request):
+        elif self._layer.forwarded(self._service.request, request) is None:
             answer.give()
         else:
             self._waiting = answer
@@ -167,15 +167,15 @@ class ActionProxy(ABC, Generic[_Goal]):
     def _not_accepted(self) -> str:
         return f"not accepted {self._times.within}"
 
-    def _receive_goal(self, goal: _Goal) -> None:
-        """Handle a goal of the controller: forward it if the layer lets it pass."""
+    def _receive_goal(self, goal: _Goal, data: Message) -> None:
+        """Handle a goal of the controller with its data: forward it if the layer lets it pass."""
         if self._goal is not None:
             self._layer.reject(self._action.request)
             self._end(goal)
             return
         self._goal = goal
         self._requests = self._new_requests()
-        if self._layer.passes(self._action.request):
+        if self._layer.forwarded(self._action.request, data) is not None:
             self._deadline = self._event_loop.clock() + self._times.timeout
             self._poll(goal)
         else:

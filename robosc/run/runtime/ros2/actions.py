@@ -150,7 +150,7 @@ class Ros2ActionProxy(ActionProxy[_Goal]):
     # From the controller
 
     def _on_goal(self, request: Message, answer: LateAnswer) -> None:
-        self._receive_goal(_Goal(uuid_bytes(request.goal_id), request, answer=answer))
+        self._receive_goal(_Goal(uuid_bytes(request.goal_id), request, answer=answer), request.goal)
 
     def _on_result_wanted(self, request: Message, answer: LateAnswer) -> None:
         identifier = uuid_bytes(request.goal_id)

@@ -338,15 +338,6 @@ class Layer : public GuardedNode<rclcpp::Node> {
     return true;
   }
 
-  void block(usher_event event, const char* name, const BlockReasons& reasons) {
-    blocked_report_.publish_text(reasons.report("Usher", seconds(), name, usher_event_name(event), components()));
-    blocked_.insert(event);
-    log_.write(seconds(), "blocked", usher_event_name(event));
-    if (warnings_.due(event)) {
-      RCLCPP_WARN(get_logger(), "%s is blocked: %s %s", name, reasons.kind(), to_json(reasons.texts()).c_str());
-    }
-  }
-
   // Handles the end of a period.
   void report() {
     publish_state();
@@ -462,6 +453,15 @@ class Layer : public GuardedNode<rclcpp::Node> {
     return reasons;
   }
 
+  void block(usher_event event, const char* name, const BlockReasons& reasons) {
+    blocked_report_.publish_text(reasons.report("Usher", seconds(), name, usher_event_name(event), components()));
+    blocked_.insert(event);
+    log_.write(seconds(), "blocked", usher_event_name(event));
+    if (warnings_.due(event)) {
+      RCLCPP_WARN(get_logger(), "%s is blocked: %s %s", name, reasons.kind(), to_json(reasons.texts()).c_str());
+    }
+  }
+
   // The verdict on a command, for /diagnostics.
   std::string verdict(usher_event event, const BlockReasons& reasons) const {
     if (!usher_enabled(&supervisor_, event)) return reasons.sentence();
@@ -553,10 +553,10 @@ class Layer : public GuardedNode<rclcpp::Node> {
   Report<std_msgs::msg::String> definition_report_;
   ReportPace report_pace_;
   Report<diagnostic_msgs::msg::DiagnosticArray> diagnostics_report_;
-
-  std::set<usher_event> blocked_;  // Since the last report on /diagnostics.
   Report<std_msgs::msg::String> blocked_report_;
   Throttle<usher_event> warnings_;
+
+  std::set<usher_event> blocked_;  // Since the last report on /diagnostics.
   std_msgs::msg::Float32 speed_message_;
   bool speed_forwarded_ = false;  // Since it was blocked last.
   std::unique_ptr<MessageRelay<std_msgs::msg::Empty>> stop_relay_;
