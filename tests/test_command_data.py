@@ -1,4 +1,4 @@
-"""Conditions on the data of commands, sentence by sentence: `SENTENCES` maps each sentence to the tests that hold it."""
+"""Conditions on the data of commands: `SENTENCES` maps each sentence to the tests that hold it."""
 
 from __future__ import annotations
 
@@ -152,8 +152,8 @@ def test_nowhere_else(statement: str) -> None:
 
 
 def test_nowhere_else_in_assignments() -> None:
-    text = changed("on response from top", "variable sent: double\n      on request to velocity do sent := value.linear.x\n"
-                   "      on response from top")  # fmt: skip
+    more_lines = "variable sent: double\n      on request to velocity do sent := value.linear.x\n      "
+    text = changed("on response from top", f"{more_lines}on response from top")
     assert rules(text) == ["type"] or "assignment-on-message-to-node" in rules(text)
 
 

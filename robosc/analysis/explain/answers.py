@@ -57,7 +57,7 @@ class Explanation:
     counterexample. `changes` are transitions of the events that can happen now and after which the event can happen.
     `way` is a shortest trace from here, under the supervisor, to a state that allows the event: empty if this state
     allows it, None if there is none. `refusal` explains the first event of the trace that the supervisor forbids, if it
-    never lets the robot reach this state.
+    never lets the robot reach this state. `data` are the requirements that permit only some data of the command here.
     """
 
     event: sct.Event
@@ -70,6 +70,7 @@ class Explanation:
     changes: tuple[Note, ...] = ()
     way: tuple[TraceStep, ...] | None = None
     refusal: Explanation | None = None
+    data: tuple[Note, ...] = ()
 
     @property
     def allowed(self) -> bool:

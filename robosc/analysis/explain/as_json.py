@@ -42,6 +42,7 @@ def _explanation(explanation: Explanation, at: At) -> dict[str, Any]:
         "trace": trace_data(explanation.situation.trace),
         "plants": _notes(explanation.plants, at),
         "requirements": _notes(explanation.requirements, at),
+        "data": _notes(explanation.data, at),
         "counterexample": counterexample
         and {
             "trace": trace_data(counterexample.trace),

@@ -66,7 +66,9 @@ class Renderer:
     def _explained(self, explanation: Explanation) -> Iterator[str]:
         event = words(explanation.event)
         if explanation.allowed:
-            yield f"The {event} can happen here{'' if explanation.event.controllable else ', and nothing prevents it'}."
+            limits = ", with some data" if explanation.data else ""
+            limits = limits if explanation.event.controllable else ", and nothing prevents it"
+            yield f"The {event} can happen here{limits}."
         elif explanation.by is None:
             allows = f"Neither the robot nor a requirement forbids the {event} here"
             yield f"{allows}, but the robot never reaches this state."
@@ -75,6 +77,8 @@ class Renderer:
         yield from self._situation(explanation.situation)
         yield from self._refused(explanation.refusal)
         yield from self._obstacles(explanation)
+        if explanation.data:
+            yield from self._section("Requirements on its data:", self._notes(explanation.data))
         if explanation.changes:
             yield from self._section("Events that make it possible at once:", self._notes(explanation.changes))
         if explanation.situation.reach is Reach.SUPERVISED and not explanation.allowed:

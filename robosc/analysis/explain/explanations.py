@@ -119,6 +119,7 @@ def _explained(
         tuple(obstacles.changes(allowed)) if supervised and not happens else (),
         _way(system, codes, allowed) if supervised else None,
         refusal,
+        tuple(obstacles.on_data()) if happens else (),
     )
 
 

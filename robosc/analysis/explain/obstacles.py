@@ -75,6 +75,15 @@ class Obstacles:
             if not self._system.is_in(self._codes, where)
         ]
 
+    def on_data(self) -> list[Note]:
+        """Return a note on each requirement that permits only some data of the command here."""
+        relation = self._system.relations[self._event]
+        return [
+            Note(requirement, requirement.text or "a requirement forbids some data")
+            for requirement in relation.requirements
+            if relation.has_data and self._system.is_in(self._codes, relation.forbidden_by(requirement))
+        ]
+
     def changes(self, allowed: Diagram) -> list[Note]:
         """Return the events that can happen here and lead to one of the states `allowed`.
 
