@@ -17,7 +17,6 @@ SENT = {
     "ratio": "std_msgs/Float32",
     "report": "std_msgs/String",
     "busy": "std_msgs/Bool",
-    "bounded": "std_msgs/Float32",
 }
 PATIENCE = 120.0
 

@@ -64,15 +64,6 @@ def test_stamps_headers_and_sends_quaternions_of_length_one(courier: Courier) ->
     assert stamp not in ("0", {"sec": 0, "nanosec": 0})
 
 
-def test_limits_change_what_is_sent(courier: Courier) -> None:
-    """A `float32` that was limited to a number is not above the number."""
-    assert sent(courier, "start", "bounded") == 0.0
-    assert sent(courier, "high count", "bounded") == pytest.approx(0.7)
-    assert sent(courier, "low count", "bounded") == -1.0
-    data = [line["data"]["value"] for line in courier.log if line["event"] == "message_bounded.c_trigger"]
-    assert {0.0, 0.699999988079071} <= set(data)
-
-
 def test_assigns_all_at_once(courier: Courier) -> None:
     assert position(courier, "ahead") == (0.5, 3.0, 13.0)
     assert variables(courier, "swapped", "Scanner") == {"seen": "ahead", "first": 3.0, "before": 0.5, "fourth": 1.0}

@@ -119,7 +119,6 @@ class Controller : public ControllerNode {
     ratio_publisher_ = advertise<std_msgs::Float32>("ratio");
     report_publisher_ = advertise<std_msgs::String>("report");
     busy_publisher_ = advertise<std_msgs::Bool>("busy");
-    bounded_publisher_ = advertise<std_msgs::Float32>("bounded");
     state_report_.open(private_, "state");
     definition_report_.open_lasting(private_, "definition");
     definition_report_.publish_text(kDefinition);
@@ -292,33 +291,6 @@ class Controller : public ControllerNode {
     return true;
   }
 
-  // Applies the limits of the model. Each reads the result of the one before.
-  void limit_bounded(std_msgs::Float32& data, FieldWriter& write, [[maybe_unused]] ArrayReader& read) {
-    write.require("data", data.data);
-    if ([[maybe_unused]] const auto before = data; data_.Counter.class_ == model::Size::large) {
-      write.set("data", data.data, smaller(double(before.data), 0.7));
-    }
-    if ([[maybe_unused]] const auto before = data; double(before.data) > 0.699999988079071) {
-      write.set("data", data.data, -1.0);
-    }
-  }
-
-  bool prepare_bounded() {
-    bounded_message_ = std_msgs::Float32();
-    FieldWriter write(log_.active());
-    ArrayReader read;
-    if (supervisor_.state.data_bounded == courier_data_bounded_d1) {
-      write.set("data", bounded_message_.data, static_cast<double>(data_.Counter.total) / 10.0);
-    }
-    limit_bounded(bounded_message_, write, read);
-    if (write.fault() != nullptr) {
-      ROS_WARN_THROTTLE(5.0, "%s is withheld: its %s would not be finite", "bounded", write.fault());
-      return false;
-    }
-    if (log_.active()) log_.note(write);
-    return true;
-  }
-
   // Whether commands are withheld now: the node ends, or stopped the robot because a topic is silent.
   bool held() const {
     if (stopping_) return true;
@@ -352,8 +324,6 @@ class Controller : public ControllerNode {
         return !held() && prepare_report();
       case courier_message_busy_c_trigger:
         return !held() && prepare_busy();
-      case courier_message_bounded_c_trigger:
-        return !held() && or_withheld(courier_message_bounded_c_trigger, prepare_bounded());
       case courier_component_Scanner_c_tau2: {
         const auto old = data_;
         if (supervisor_.state.component_Scanner == courier_component_Scanner_turning) {
@@ -392,10 +362,6 @@ class Controller : public ControllerNode {
         break;
       case courier_message_busy_c_trigger:
         busy_publisher_.publish(busy_message_);
-        direction = "out";
-        break;
-      case courier_message_bounded_c_trigger:
-        bounded_publisher_.publish(bounded_message_);
         direction = "out";
         break;
       case courier_message_side_u_response:
@@ -547,16 +513,13 @@ class Controller : public ControllerNode {
     status.add("request to ratio", verdict(courier_message_ratio_c_trigger, BlockReasons()));
     status.add("request to report", verdict(courier_message_report_c_trigger, against_report()));
     status.add("request to busy", verdict(courier_message_busy_c_trigger, BlockReasons()));
-    status.add("request to bounded", verdict(courier_message_bounded_c_trigger, BlockReasons()));
     for (const std::string& fault : faults("target")) status.warn(fault);
     for (const std::string& fault : faults("sum")) status.warn(fault);
     for (const std::string& fault : faults("ratio")) status.warn(fault);
     for (const std::string& fault : faults("report")) status.warn(fault);
     for (const std::string& fault : faults("busy")) status.warn(fault);
-    for (const std::string& fault : faults("bounded")) status.warn(fault);
     if (withheld_.count(courier_message_target_c_trigger) > 0) status.warn("target is withheld");
     if (withheld_.count(courier_message_ratio_c_trigger) > 0) status.warn("ratio is withheld");
-    if (withheld_.count(courier_message_bounded_c_trigger) > 0) status.warn("bounded is withheld");
     return status.made();
   }
 
@@ -582,7 +545,6 @@ class Controller : public ControllerNode {
   std_msgs::Float32 ratio_message_;
   std_msgs::String report_message_;
   std_msgs::Bool busy_message_;
-  std_msgs::Float32 bounded_message_;
 
   std::set<courier_event> withheld_;  // Commands whose data can't be sent.
   bool watchdog_stops_ = false;
@@ -598,7 +560,6 @@ class Controller : public ControllerNode {
   ros::Publisher ratio_publisher_;
   ros::Publisher report_publisher_;
   ros::Publisher busy_publisher_;
-  ros::Publisher bounded_publisher_;
   std::optional<Watchdog<Countdown>> scan_watchdog_;
   ros::Subscriber scan_subscription_;
   std::optional<Watchdog<Countdown>> count_watchdog_;

@@ -234,34 +234,6 @@ class Controller : public ControllerNode<rclcpp::Node> {
     return true;
   }
 
-  // Applies the limits of the model. Each reads the result of the one before.
-  void limit_bounded(std_msgs::msg::Float32& data, FieldWriter& write, [[maybe_unused]] ArrayReader& read) {
-    write.require("data", data.data);
-    if ([[maybe_unused]] const auto before = data; data_.Counter.class_ == model::Size::large) {
-      write.set("data", data.data, smaller(double(before.data), 0.7));
-    }
-    if ([[maybe_unused]] const auto before = data; double(before.data) > 0.699999988079071) {
-      write.set("data", data.data, -1.0);
-    }
-  }
-
-  bool prepare_bounded() {
-    bounded_message_ = std_msgs::msg::Float32();
-    FieldWriter write(log_.active());
-    ArrayReader read;
-    if (supervisor_.state.data_bounded == courier_data_bounded_d1) {
-      write.set("data", bounded_message_.data, static_cast<double>(data_.Counter.total) / 10.0);
-    }
-    limit_bounded(bounded_message_, write, read);
-    if (write.fault() != nullptr) {
-      RCLCPP_WARN_THROTTLE(get_logger(), *get_clock(), 5000, "%s is withheld: its %s would not be finite", "bounded",
-          write.fault());
-      return false;
-    }
-    if (log_.active()) log_.note(write);
-    return true;
-  }
-
   // Whether commands are withheld now: the node ends, or stopped the robot because a topic is silent.
   bool held() const {
     if (stopping_) return true;
@@ -295,8 +267,6 @@ class Controller : public ControllerNode<rclcpp::Node> {
         return !held() && prepare_report();
       case courier_message_busy_c_trigger:
         return !held() && prepare_busy();
-      case courier_message_bounded_c_trigger:
-        return !held() && or_withheld(courier_message_bounded_c_trigger, prepare_bounded());
       case courier_component_Scanner_c_tau2: {
         const auto old = data_;
         if (supervisor_.state.component_Scanner == courier_component_Scanner_turning) {
@@ -335,10 +305,6 @@ class Controller : public ControllerNode<rclcpp::Node> {
         break;
       case courier_message_busy_c_trigger:
         busy_publisher_->publish(busy_message_);
-        direction = "out";
-        break;
-      case courier_message_bounded_c_trigger:
-        bounded_publisher_->publish(bounded_message_);
         direction = "out";
         break;
       case courier_message_side_u_response:
@@ -492,16 +458,13 @@ class Controller : public ControllerNode<rclcpp::Node> {
     status.add("request to ratio", verdict(courier_message_ratio_c_trigger, BlockReasons()));
     status.add("request to report", verdict(courier_message_report_c_trigger, against_report()));
     status.add("request to busy", verdict(courier_message_busy_c_trigger, BlockReasons()));
-    status.add("request to bounded", verdict(courier_message_bounded_c_trigger, BlockReasons()));
     for (const std::string& fault : faults("target")) status.warn(fault);
     for (const std::string& fault : faults("sum")) status.warn(fault);
     for (const std::string& fault : faults("ratio")) status.warn(fault);
     for (const std::string& fault : faults("report")) status.warn(fault);
     for (const std::string& fault : faults("busy")) status.warn(fault);
-    for (const std::string& fault : faults("bounded")) status.warn(fault);
     if (withheld_.count(courier_message_target_c_trigger) > 0) status.warn("target is withheld");
     if (withheld_.count(courier_message_ratio_c_trigger) > 0) status.warn("ratio is withheld");
-    if (withheld_.count(courier_message_bounded_c_trigger) > 0) status.warn("bounded is withheld");
     return status.made();
   }
 
@@ -537,7 +500,6 @@ class Controller : public ControllerNode<rclcpp::Node> {
     ratio_publisher_ = advertise<std_msgs::msg::Float32>("ratio", rclcpp::QoS(10));
     report_publisher_ = advertise<std_msgs::msg::String>("report", rclcpp::QoS(10));
     busy_publisher_ = advertise<std_msgs::msg::Bool>("busy", rclcpp::QoS(10));
-    bounded_publisher_ = advertise<std_msgs::msg::Float32>("bounded", rclcpp::QoS(10));
 
     state_report_.open(*this, "~/state");
     definition_report_.open_lasting(*this, "~/definition");
@@ -604,7 +566,6 @@ class Controller : public ControllerNode<rclcpp::Node> {
   std_msgs::msg::Float32 ratio_message_;
   std_msgs::msg::String report_message_;
   std_msgs::msg::Bool busy_message_;
-  std_msgs::msg::Float32 bounded_message_;
 
   std::set<courier_event> withheld_;  // Commands whose data can't be sent.
   bool watchdog_stops_ = false;
@@ -620,7 +581,6 @@ class Controller : public ControllerNode<rclcpp::Node> {
   rclcpp::Publisher<std_msgs::msg::Float32>::SharedPtr ratio_publisher_;
   rclcpp::Publisher<std_msgs::msg::String>::SharedPtr report_publisher_;
   rclcpp::Publisher<std_msgs::msg::Bool>::SharedPtr busy_publisher_;
-  rclcpp::Publisher<std_msgs::msg::Float32>::SharedPtr bounded_publisher_;
   std::optional<Watchdog<Countdown>> scan_watchdog_;
   Subscription<sensor_msgs::msg::LaserScan> scan_subscription_;
   std::optional<Watchdog<Countdown>> count_watchdog_;
