@@ -37,7 +37,9 @@ def test_what_was_kept_is_heard_before_any_command(nodes: Workspace | Runner, tm
         second.do("advertise", topic="/estop", kind="std_msgs/Bool")
         processes.wait_until(lambda: second.do("listeners", topic="/estop"), "the node hears both")
         second.do("publish", topic="/estop", fields={"data": False})
+        # The limits of the model leave 0.5 of the speed that it provides.
         processes.wait_until(lambda: speeds()[-1:] == [0.5], "the button is released")
+        assert world.all("heard")[-1]["data"]["linear"]["y"] == 0.25
         assert processes.stop(node) == 0
 
 

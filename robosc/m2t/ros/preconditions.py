@@ -15,7 +15,7 @@ from robosc.model import expression as ex
 from robosc.model import rosgraph, sct
 from robosc.model.places import place
 from robosc.model.reflection import tree
-from robosc.model.semantics.messages import find_message, holds_objects, parts_of, path_of
+from robosc.model.semantics.messages import fields_set, find_message, holds_objects, parts_of, path_of, source_of
 from robosc.model.semantics.typing import DOUBLE, ArrayType, declared_type, infer
 
 if TYPE_CHECKING:
@@ -253,8 +253,7 @@ def _nothing_safe(graph: rosgraph.RosGraph, configuration: Configuration) -> Ite
     if "on_withheld" not in configuration.model_fields_set:
         outside = _from_outside(graph)
         for sending in (sending for publisher in graph.publishers for sending in publisher.sendings):
-            fields = [field for provided in sending.alternatives for field in provided.fields]
-            withheld = next((field for field in fields if _may_be_withheld(field, outside)), None)
+            withheld = next((field for field in fields_set(sending) if _may_be_withheld(field, outside)), None)
             if withheld is not None:
                 what = "is not a" if infer(withheld.value) == DOUBLE else "has a value that is not a"
                 message = (
@@ -272,7 +271,7 @@ def _may_be_withheld(field: rosgraph.FieldAssignment, outside: set[rosgraph.Node
     value = field.value
     if isinstance(value, rosgraph.WireAccess) and value.variable is not None and holds_objects(field.type):
         return any(isinstance(kind, ex.DoubleType) for _, kind in parts_of(value.variable.type, path_of(value)))
-    return infer(value) in {DOUBLE, ArrayType(DOUBLE)} and _reads(value, outside)
+    return infer(value) in {DOUBLE, ArrayType(DOUBLE)} and _reads(value, outside, is_sent=True)
 
 
 def _from_outside(graph: rosgraph.RosGraph) -> set[rosgraph.NodeVariable]:
@@ -292,9 +291,14 @@ def _from_outside(graph: rosgraph.RosGraph) -> set[rosgraph.NodeVariable]:
     return variables
 
 
-def _reads(value: ex.Expression, outside: set[rosgraph.NodeVariable]) -> bool:
+def _reads(value: ex.Expression, outside: set[rosgraph.NodeVariable], *, is_sent: bool = False) -> bool:
+    """Return whether a value reads a double from the robot. `is_sent`: it is part of a message, and may read that."""
     return any(
-        (isinstance(part, rosgraph.WireAccess) and declared_type(part.type) in {DOUBLE, ArrayType(DOUBLE)})
+        (
+            isinstance(part, rosgraph.WireAccess)
+            and declared_type(part.type) in {DOUBLE, ArrayType(DOUBLE)}
+            and not (is_sent and source_of(part) is None)
+        )
         or (isinstance(part, rosgraph.NodeVariableReference) and part.variable in outside)
         or (isinstance(part, ex.Division) and not isinstance(part.right, (ex.IntegerLiteral, ex.DoubleLiteral)))
         for _, part in tree(value)

@@ -79,7 +79,7 @@ def test_the_table_has_the_words_of_the_grammar() -> None:
     reserved = {word for words in rules.RESERVED.values() for word in words}
     in_context = {word for words in rules.IN_CONTEXT.values() for word in words}
     assert reserved == ROBOSC_KEYWORDS
-    assert reserved | in_context | {*rules.SEND, *rules.AT_MOST, *rules.UNITS, "canceled"} == words
+    assert reserved | in_context | {*rules.SEND, *rules.AT_MOST, *rules.UNITS, "canceled", "limit"} == words
     assert re.findall(r"\w+", pattern("Quantifier").partition(")")[0]) == list(ROBOSC_QUANTIFIERS)
     assert re.findall(r"\w+", pattern("BuiltIn").partition(")")[0]) == list(ROBOSC_FUNCTIONS)
 

@@ -30,7 +30,9 @@ def chooser() -> robosc.Models:
 def prepared(files: dict[str, str]) -> str:
     """Return the functions of a node that prepare its messages."""
     (node,) = (text for path, text in files.items() if path.endswith("_node.cpp"))
-    return "\n".join(re.findall(r"^  (?:bool prepare|void limit)_\w+\([^\n]*\) \{\n.*?^  \}\n", node, re.DOTALL | re.MULTILINE))
+    return "\n".join(
+        re.findall(r"^  (?:bool prepare|void limit)_\w+\([^\n]*\) \{\n.*?^  \}\n", node, re.DOTALL | re.MULTILINE)
+    )
 
 
 def test_a_field_is_set_under_the_condition_of_its_branch(
