@@ -27,6 +27,7 @@ from robosc.model.semantics.instances import bound_arguments
 from robosc.model.semantics.messages import EACH, holds_objects, is_structured, origins, reads_elements
 from robosc.model.semantics.naming import Names
 from robosc.model.semantics.printing import RoboscPrinter, conjunction
+from robosc.model.semantics.state_values import StateValue
 from robosc.model.semantics.typing import ArrayType, ObjectType, declared_type
 from robosc.model.semantics.walks import branches
 
@@ -275,7 +276,8 @@ class _RoboscToRosgraph:
                 access = robosc.ErrorReason(enumeration=carried.enum)
             else:
                 access = carried.expression
-            assigned = self.expressions(access, port.instance, value)
+            within = carried.within if isinstance(carried, StateValue) else port.instance
+            assigned = self.expressions(access, within, value)
             reception.inputs.append(rosgraph.InputAssignment(input=declared, value=assigned))
         return reception
 

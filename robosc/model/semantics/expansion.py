@@ -177,6 +177,8 @@ class Expansion:
         element, environment = node
         match element:
             case robosc.Access(item=robosc.FormalParameter() as parameter) if parameter in environment.arguments:
+                if element.segments:
+                    return (yield from self._part(environment.arguments[parameter], element, environment))
                 return self._argument(environment.arguments[parameter])
             case robosc.Access(item=(robosc.Constant() | robosc.Condition()) as named):
                 written = yield from self._named(element, named, environment)
@@ -202,6 +204,17 @@ class Expansion:
             return copy_tree(argument)
         self._unplaced.remove(argument)
         return argument
+
+    def _part(
+        self, argument: ex.Expression, access: robosc.Access, environment: _Environment
+    ) -> Generator[Any, Any, ex.Expression]:
+        """Return the part of an argument that an access to its parameter reads. The argument is data."""
+        part = copy_tree(argument)
+        for segment in access.segments:
+            copied = yield (segment, environment)
+            if isinstance(part, robosc.Access):
+                part.segments.append(copied)
+        return part
 
     def _named(
         self, access: robosc.Access, item: robosc.Constant | robosc.Condition, environment: _Environment
