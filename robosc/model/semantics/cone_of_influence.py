@@ -199,9 +199,7 @@ def accesses(expression: ex.Expression | None) -> Iterator[robosc.Access]:
     return (part for part in parts(expression) if isinstance(part, robosc.Access))
 
 
-def _accesses_of_supervisor(
-    expression: ex.Expression | None, readings: Sequence[InputRead]
-) -> Iterator[robosc.Access]:
+def _accesses_of_supervisor(expression: ex.Expression | None, readings: Sequence[InputRead]) -> Iterator[robosc.Access]:
     """Iterate over the accesses in an expression except those in values that the node computes."""
     computed = {reading.part for reading in readings if isinstance(reading.source, StateValue)}
     pending = [expression]

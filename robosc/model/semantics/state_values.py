@@ -96,9 +96,8 @@ class _Splitting:
                 if source.type == INTEGER and source.bounds is None:
                     yield part
                 continue
-            if part in self._data and source is None:
-                yield part
-            elif is_stored(part) or is_foreign(part, self._types):
+            is_beyond = part in self._data and source is None
+            if is_beyond or is_stored(part) or is_foreign(part, self._types):
                 yield part
             pending += reversed(operands(part))
 
@@ -119,9 +118,7 @@ class _Splitting:
         """Return the parts that the node computes from the robot's state: the largest joins of the smallest parts."""
         smallest = set(self._smallest())
         conditions = {
-            part
-            for part, source in self._data.items()
-            if isinstance(source, ComputedValue) and source.type == BOOLEAN
+            part for part, source in self._data.items() if isinstance(source, ComputedValue) and source.type == BOOLEAN
         } | smallest
         joined: dict[ex.Expression, bool] = {}
         fold(

@@ -24,6 +24,7 @@ from robosc.model.semantics.roles import event_name, plant_of
 from robosc.model.semantics.walks import operands
 from robosc.run.runtime.core.event_log import nest
 from robosc.run.runtime.core.node_data import NodeData
+from robosc.run.simulation.tracked_data import TrackedData, reads_stored
 from robosc.run.simulation.unreadable import Unreadable, past_end
 from robosc.run.simulation.wire_fit import DIGITS, WireFit, in_short, place
 
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
     from robosc.base.ros_types import RosTypes
     from robosc.engine import Engine
     from robosc.engine.state import Value
+    from robosc.run.simulation.tracked_data import Stored
 
 #: Stands for a value that the JSON text does not have.
 _ABSENT: Any = object()
@@ -128,6 +130,38 @@ class EventData:
         self._responses = {error: response for response, error in self._errors.items()}
         #: Whether the present event has no data, so that its data is that of a new message.
         self._is_new = False
+        #: Variables that the node stores, if inputs depend on them.
+        self.tracked = None if graph is None or self._node is None else TrackedData(engine, graph, self._node)
+        if graph is not None and self.tracked is not None and self.tracked.is_needed:
+            self.tracked.values = self._new_objects(graph)
+
+    def _new_objects(self, graph: rosgraph.RosGraph) -> dict[rosgraph.NodeVariable, Any]:
+        """Return the objects that the node stores at first: new data of their ROS types."""
+        return {
+            variable: self._received(event_name(variable.reception.event), _ABSENT, tuple(variable.path))
+            for variable in graph.variables
+            if variable.reception is not None and isinstance(variable.type, rosgraph.ObjectType)
+        }
+
+    @property
+    def stored(self) -> Stored:
+        """Variables that the node stores, if inputs depend on them."""
+        return {} if self.tracked is None else self.tracked.values
+
+    @stored.setter
+    def stored(self, values: Stored) -> None:
+        if self.tracked is not None:
+            self.tracked.values = values
+
+    def before(self, event: str, data: Mapping[str, Any], inputs: Mapping[str, Value]) -> None:
+        """Change the variables that the node stores, as an event does that is about to happen. Raises DataError."""
+        if self.tracked is not None:
+            value = data.get("value", _ABSENT)
+            self.tracked.before(
+                event,
+                inputs,
+                lambda read: self._received(event, value if value is _ABSENT else whole(value, read)),
+            )
 
     def inputs(self, event: str, data: Mapping[str, Any]) -> dict[str, Value]:
         """Return values of the event's inputs by their names. Raises DataError, and KeyError for an unknown event."""
@@ -181,11 +215,32 @@ class EventData:
             return None
         for reaction in self._node.reactions(reception.event):
             guard, value = reaction.guard, data["value"]
-            fault = None if guard is None else past_end([guard], value)
-            if fault is None and (guard is None or self._node.value(guard, self._received(event, whole(value, guard)))):
-                fault = past_end([*reaction.needs, *(assigned.value for assigned in reaction.assignments)], value)
+            needs = [*reaction.needs, *(assigned.value for assigned in reaction.assignments)]
+            if any(map(reads_stored, [*needs, *([] if guard is None else [guard])])):
+                fault = self._fault(event, data, guard, needs)
+            else:
+                fault = None if guard is None else past_end([guard], value)
+                if fault is None and (
+                    guard is None or self._node.value(guard, self._received(event, whole(value, guard)))
+                ):
+                    fault = past_end(needs, value)
             if fault is not None:
                 return Unreadable(str(fault), self._errors.get(event))
+        return None
+
+    def _fault(
+        self, event: str, data: Mapping[str, Any], guard: ex.Expression | None, needs: Sequence[ex.Expression]
+    ) -> UnreadableError | None:
+        """Return why values that depend on stored data can't be read, or None. Given inputs need no data."""
+        if self.tracked is None or not self.tracked.is_needed or "where" in data:
+            return None
+        assert self._node is not None
+        try:
+            if guard is None or self._node.value(guard, self._received(event, whole(data["value"], guard))):
+                for needed in needs:
+                    self._node.value(needed, self._received(event, whole(data["value"], needed)))
+        except UnreadableError as fault:
+            return fault
         return None
 
     def _is_readable(self, reception: rosgraph.Reception, data: Any) -> bool:

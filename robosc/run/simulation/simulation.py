@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from robosc.base.ros_types import RosTypes
     from robosc.engine.state import State, Value
     from robosc.model import rosgraph
+    from robosc.run.simulation.tracked_data import Stored
 
 #: Lines of scripts beside events: the end of a period; the begin and end of a message with several events.
 TICK, BEGIN, END = "tick", "begin", "end"
@@ -100,7 +101,7 @@ class Simulation:
         self.engine = Engine(model)
         self.data = EventData(self.engine, graph, types)
         self.trace: list[RequestResult] = []
-        self._before: list[State] = []
+        self._before: list[tuple[State, Stored]] = []
         self._inputs = {event_name(event): list(event.inputs) for plant in model.plants for event in plant.events}
 
     @property
@@ -117,9 +118,10 @@ class Simulation:
             arguments = data or {}
             return RequestResult(event, arguments, refusal(self.engine, arguments["of"]), whole_state(self.engine))
         inputs = self.data.inputs(event, data or {})
-        before = self.engine.state
+        before = self.engine.state, self.data.stored
         by = self.engine.blocked_by(event) or self.data.unreadable(event, data or {})
         if by is None:
+            self.data.before(event, data or {}, inputs)
             self.engine.perform(event, inputs)
         violated = violated_names(self.engine, event) if by is Blocked.ASSUMPTION else ()
         happened = RequestResult(event, data or {}, by, whole_state(self.engine), violated)
@@ -132,7 +134,7 @@ class Simulation:
         """Take back the last event that happened and return it; None if there is none."""
         if not self.trace:
             return None
-        self.engine.state = self._before.pop()
+        self.engine.state, self.data.stored = self._before.pop()
         return self.trace.pop()
 
     def random_event(self, random: Random) -> tuple[str, dict[str, Any]] | None:
@@ -195,9 +197,11 @@ class LoopSimulation:
     ) -> None:
         """`types`: the definitions of ROS types, for fields missing in data; None: those of the environment."""
         self._happened: list[str] = []
-        hooks = Hooks(after=self._happened.append, livelock=lambda: self._happened.append("livelock"))
+        hooks = Hooks(self._store, self._happened.append, lambda: self._happened.append("livelock"))
         self._loop = ControlLoop(model, settings, hooks)
         self.data = EventData(self._loop.engine, graph, types)
+        #: Data and inputs of the events that a step gives.
+        self._given: dict[str, tuple[Mapping[str, Any], Mapping[str, Value]]] = {}
         self._in_batch = False
 
     @property
@@ -226,9 +230,10 @@ class LoopSimulation:
             violated = violated_names(self._loop.engine, event) if by is Blocked.ASSUMPTION else []
             error = self.data.error_of(event) if violated else by.error if isinstance(by, Unreadable) else None
             if error is not None:
-                self._loop.perform(error, self.data.inputs(error, self.data.of_unreadable(data)))
+                data_of_error = self.data.of_unreadable(data)
+                self._perform(error, data_of_error, self.data.inputs(error, data_of_error))
             elif by is None:
-                self._loop.perform(event, inputs)
+                self._perform(event, data, inputs)
             if not self._in_batch:
                 self._loop.end()
         details = dict(data) if event in (WAIT, REFUSE) else {}
@@ -241,6 +246,16 @@ class LoopSimulation:
             "happened": list(self._happened),
             "state": whole_state(self._loop.engine),
         }
+
+    def _perform(self, event: str, data: Mapping[str, Any], inputs: Mapping[str, Value]) -> None:
+        self._given = {event: (data, inputs)}
+        self._loop.perform(event, inputs)
+        self._given = {}
+
+    def _store(self, event: str) -> bool:
+        """Change the variables that the node stores before an event."""
+        self.data.before(event, *self._given.get(event, ({}, {})))
+        return True
 
     def _wait(self, milliseconds: int) -> None:
         """Let time pass; timers that expire on the way fire at their time."""
