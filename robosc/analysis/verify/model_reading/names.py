@@ -280,10 +280,9 @@ class Names:
                 return (yield from self._data(access, place))
             case robosc.FormalParameter():
                 argument: ex.Expression = yield place.bound[item]
-                if access.segments:
-                    return (yield from self._part(argument, access, place))
                 # Arguments of an instance are constant; arguments of a function may be any expressions.
-                return self._folded(argument) if isinstance(item.eContainer(), robosc.Component) else argument
+                is_constant = isinstance(item.eContainer(), robosc.Component)
+                return self._folded(argument) if is_constant else (yield from self._part(argument, access, place))
             case robosc.EnumValue():
                 return self.leaf(Literal(item.name))
             case robosc.Parameter():
@@ -300,17 +299,25 @@ class Names:
         match item:
             case robosc.State() if instance is not None:
                 return self._called(self.leaf(At(Slot(instance.plant), item.name)), instance.name, item.name)
-            case robosc.Variable() if instance is not None and self._is_data(item.type):
-                start = self.leaf(Data((instance.name, ".", item.name), None))
-                return (yield from self._part(start, access, place))
             case robosc.Variable() if instance is not None:
-                return self._called(self.leaf(Slot(instance.plant, item.name)), instance.name, item.name)
+                return (yield from self._variable(access, instance, place))
             case robosc.Service() | robosc.Action() if instance is not None:
                 return self._running(item, instance)
         if not isinstance(item, robosc.Constant | robosc.Condition):
             raise NotReadError(item)
         value: ex.Expression = yield item.value, self._inside(item, instance)
         return self._folded(value) if isinstance(item, robosc.Constant) else value
+
+    def _variable(
+        self, access: robosc.Access, instance: Instance, place: Environment
+    ) -> Generator[Any, Any, ex.Expression]:
+        """Return a variable of the supervisor, or data that only the node stores."""
+        variable = access.item
+        assert isinstance(variable, robosc.Variable)
+        if self._is_data(variable.type):
+            start = self.leaf(Data((instance.name, ".", variable.name), None))
+            return (yield from self._part(start, access, place))
+        return self._called(self.leaf(Slot(instance.plant, variable.name)), instance.name, variable.name)
 
     def _is_data(self, declared: robosc.DataType) -> bool:
         """Return whether a variable of the type exists only in the node."""
@@ -379,7 +386,9 @@ class Names:
         self, start: ex.Expression, access: robosc.Access, place: Environment
     ) -> Generator[Any, Any, ex.Expression]:
         """Return the part of some data to which the segments of an access lead."""
-        whole = self._meanings[start]
+        whole = self._meanings.get(start)
+        if not access.segments:
+            return start
         assert isinstance(whole, Data)
         words, path = list(whole.words), whole.path
         for segment in access.segments:
