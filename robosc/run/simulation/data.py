@@ -18,13 +18,13 @@ from robosc.model.reflection import tree
 from robosc.model.semantics.communication import happens_anyway
 from robosc.model.semantics.evaluation import as_double
 from robosc.model.semantics.failures import REASON, UNREADABLE, brings_data, is_reason, possible_reasons
-from robosc.model.semantics.messages import is_structured, receptions, source_of
+from robosc.model.semantics.messages import is_structured, reads_stored, receptions, source_of
 from robosc.model.semantics.operators import UnreadableError
 from robosc.model.semantics.roles import event_name, plant_of
 from robosc.model.semantics.walks import operands
 from robosc.run.runtime.core.event_log import nest
 from robosc.run.runtime.core.node_data import NodeData
-from robosc.run.simulation.tracked_data import TrackedData, reads_stored
+from robosc.run.simulation.tracked_data import TrackedData
 from robosc.run.simulation.unreadable import Unreadable, past_end
 from robosc.run.simulation.wire_fit import DIGITS, WireFit, in_short, place
 

@@ -6,9 +6,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 from robosc.engine.transitions import Transitions
-from robosc.model import rosgraph
-from robosc.model.reflection import tree
-from robosc.model.semantics.messages import receptions, source_of
+from robosc.model.semantics.messages import reads_stored, receptions
 from robosc.model.semantics.operators import UnreadableError
 from robosc.model.semantics.roles import event_name
 from robosc.run.runtime.core.node_data import within_range
@@ -19,6 +17,7 @@ if TYPE_CHECKING:
     from robosc.engine import Engine
     from robosc.engine.state import Value
     from robosc.model import expression as ex
+    from robosc.model import rosgraph
     from robosc.run.runtime.core.node_data import NodeData
 
     #: Stored values by their variables.
@@ -70,14 +69,3 @@ class TrackedData:
                         value = self._node.value(assigned.value, received(assigned.value))
                         changed[assigned.variable] = within_range(value, assigned.variable.type)
         self._node.variables.update(changed)
-
-
-def reads_stored(expression: ex.Expression) -> bool:
-    """Return whether an expression reads variables that the node stores. Parameters do not count."""
-    for _, part in tree(expression):
-        variable = part.variable if isinstance(part, rosgraph.NodeVariableReference) else None
-        if isinstance(part, rosgraph.WireAccess):
-            variable = source_of(part)
-        if variable is not None and not isinstance(variable, rosgraph.Parameter):
-            return True
-    return False
