@@ -444,6 +444,8 @@ class Names:
             return list(self._named[part])
         if isinstance(meaning, Data):
             return list(meaning.words)
+        if isinstance(meaning, Slot | At):
+            return []  # a part of an expression that the text calls by a name
         if isinstance(meaning, Literal):
             return [str(meaning)]
         if isinstance(part, ex.Conditional):
