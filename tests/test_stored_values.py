@@ -46,7 +46,16 @@ SENTENCES = {
     ],
     "timed and silent transitions and conditions of requirements stay `variable-type`": ["no_event"],
     "the hint shows a variable that the event sets": ["hint"],
-    "every construct works everywhere": ["verified", "saved", "instances", "requirement_automata", "undo", "script"],
+    "every construct works everywhere": [
+        "verified",
+        "saved",
+        "instances",
+        "parameters_of_instances",
+        "ends_are_verified",
+        "requirement_automata",
+        "undo",
+        "script",
+    ],
 }
 WAYPOINTS = Path(__file__).parent / "run" / "runtime" / "waypoints.rscd"
 CART = """robot Cart {{
@@ -225,6 +234,27 @@ def test_instances() -> None:
       requirement go needs !Left.near or !Right.near
     }"""
     assert inputs(text) == ["value < Left.last + 0.5", "value < Right.last + 0.5"]
+
+
+def test_parameters_of_instances() -> None:
+    """A parameter belongs to the component whose text reads it, not to the one that it hears."""
+    text = """robot Two {
+      component Sensor { outgoing message range with type: double }
+      component Eye(first: double) {
+        parameter reach: double = first
+        behaviour { variable near: boolean
+          on response from Sensor.range if value < reach do near := true
+          initial marked state on_ {} }
+      }
+      component Left is Eye(0.5)
+      component Right is Eye(0.25)
+      component Motor { incoming message go with type: none }
+      requirement go needs !Left.near or !Right.near
+    }"""
+    assert inputs(text) == ["value < Left.reach", "value < Right.reach"]
+    assert proved(text)
+    robot = robosc.load(text=text)
+    assert [parameter.component for parameter in robosc.to_rosgraph(robot).parameters] == ["Left", "Right"]
 
 
 def test_requirement_automata() -> None:

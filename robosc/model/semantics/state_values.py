@@ -8,7 +8,7 @@ many values around them is one input. The node computes it before the event.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeGuard
 
 from robosc.model import expression as ex
 from robosc.model import robosc
@@ -69,10 +69,17 @@ def with_state_values(
 ) -> Sequence[tuple[ex.Expression, InputSource | None]]:
     """Return the parts of an expression that become inputs, with values that the node computes from the robot's state.
 
-    `inputs` are its parts as `inputs_in` returns them. They are the result unless the supervisor lacks something.
+    `inputs` are its parts as `inputs_in` returns them. They are the result unless the supervisor lacks something. If a
+    component reacts to another one, values that read its parameters belong to it.
     """
     splitting = _Splitting(dict(inputs), expression, context)
-    return list(splitting.inputs()) if splitting.unknown else inputs
+    parts_of_expression = list(splitting.inputs()) if splitting.unknown else inputs
+    if context.within is context.port.instance:
+        return parts_of_expression
+    return [
+        (part, splitting.state_value(part, source.bounds) if _reads_own_parameter(source) else source)
+        for part, source in parts_of_expression
+    ]
 
 
 class _Splitting:
@@ -205,12 +212,23 @@ class _Splitting:
             happens_anyway(self._context.event) and any(map(is_partial, parts(part)))
         ):
             part = part.operand
-        instances, within, port, event, bounds, _ = self._context
-        kind = self._types(part)
-        assigned = part is self._expression or part in _branches(self._expression)
-        bounds = self._bounds(part, is_assigned=assigned) if kind == INTEGER else None
+        is_integer = self._types(part) == INTEGER
+        bounds = self._bounds(part, is_assigned=part in _branches(self._expression)) if is_integer else None
+        return part, self.state_value(part, bounds)
+
+    def state_value(self, part: ex.Expression, bounds: tuple[int, int] | None) -> StateValue:
+        """Return the value of a part as an input with these bounds."""
+        instances, within, port, event, *_ = self._context
         expression = _qualified(part, instances, within)
-        return part, StateValue(port, event, RoboscPrinter()(expression), bounds, expression, kind, within)
+        return StateValue(port, event, RoboscPrinter()(expression), bounds, expression, self._types(part), within)
+
+
+def _reads_own_parameter(source: InputSource | None) -> TypeGuard[ComputedValue]:
+    """Return whether a value that the node computes reads a parameter of a component."""
+    return isinstance(source, ComputedValue) and any(
+        isinstance(part, robosc.Access) and isinstance(part.item, robosc.Parameter) and part.component is not None
+        for part in parts(source.expression)
+    )
 
 
 def is_stored(part: ex.Expression) -> bool:
