@@ -29,6 +29,7 @@ from robosc.model.semantics.instances import bound_arguments
 from robosc.model.semantics.messages import EACH, holds_objects, is_structured, origins, reads_elements
 from robosc.model.semantics.naming import Names
 from robosc.model.semantics.printing import RoboscPrinter, conjunction
+from robosc.model.semantics.state_values import StateValue
 from robosc.model.semantics.typing import ArrayType, ObjectType, declared_type
 from robosc.model.semantics.walks import branches
 
@@ -307,7 +308,8 @@ class _RoboscToRosgraph:
                 access = robosc.ErrorReason(enumeration=carried.enum)
             else:
                 access = carried.expression
-                within = self.trace.cone.data[carried].reason.within
+            if isinstance(carried, StateValue):
+                within = carried.within
             yield rosgraph.InputAssignment(input=declared, value=self.expressions(access, within, value))
 
     def field(self, port: PortInstance, event: PortEvent) -> str:

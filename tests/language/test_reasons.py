@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from robosc.model import robosc as rsc
 from robosc.model.semantics.failures import FAILURES, REASONS, is_failure
-from tests.language.second_edition import errors, running, supervised
+from tests.language.second_edition import running, supervised
 from tests.language.texts import reading, underlined
 from tests.searching import examples
 
@@ -161,9 +161,15 @@ def test_a_condition_on_elements_is_one_input_and_so_is_its_negation() -> None:
     assert failed(robot(driving), nothing).state["component_Base"] == "driving"
 
 
-def test_a_condition_on_elements_and_states_can_be_no_input() -> None:
-    driving = "on error from drive if value.codes[0] = 5 or number = 3 goto other"
-    assert [rule for rule, _ in errors(robot(driving))] == ["variable-type"]
+def test_a_condition_on_elements_and_states_is_one_input() -> None:
+    driving = """on error from drive if value.codes[0] = 5 or number = 3 goto other
+      on error from drive if !(value.codes[0] = 5 or number = 3) and number < 4 goto ready
+      on error from drive do number := 3"""
+    model = supervised(robot(driving))
+    (plant,) = (plant for plant in model.plants if plant.inputs)
+    texts = [carried.text for carried in plant.inputs]
+    whole = "value.codes[0] = 5 or Base.number = 3"
+    assert texts == [whole, f"!({whole})"]
 
 
 def test_an_assignment_that_can_not_be_read_is_left_out() -> None:
@@ -229,16 +235,20 @@ def test_an_error_that_is_forbidden_for_a_reason_must_not_come(others: int) -> N
 
 
 @pytest.mark.parametrize(
-    "driving",
+    ("driving", "texts"),
     [
-        "on error from drive if kept[0] = 1 goto other",
-        "on canceled from drive if kept[0] = 1 goto other",
-        "on error from drive if error = lost do number := kept[0] goto other transition if number = 9 goto other",
+        ("on error from drive if kept[0] = 1 goto other", ["Base.kept[0] = 1"]),
+        ("on canceled from drive if !(kept[0] = 1) and error_seen goto other", ["!(Base.kept[0] = 1)"]),
+        (
+            "on error from drive if error = lost do number := kept[0] goto other transition if number = 9 goto other",
+            ["error", "Base.kept[0]", "Base.kept[0] = Base.kept[0]"],
+        ),
     ],
 )
-def test_elements_that_the_node_has_kept_are_no_input(driving: str) -> None:
-    text = robot(driving, variables="variable kept: array(integer)")
-    assert "variable-type" in {rule for rule, _ in errors(text)}
+def test_elements_that_the_node_has_kept_are_inputs(driving: str, texts: list[str]) -> None:
+    text = robot(driving, variables="variable kept: array(integer) variable error_seen: boolean")
+    (plant,) = (plant for plant in supervised(text).plants if plant.inputs)
+    assert [carried.text for carried in plant.inputs] == texts
 
 
 def test_a_reason_is_bare_beside_a_variable_of_a_library(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from tests.ros.workspaces import CPP, EXAMPLES, Workspace, middleware
+from tests.ros.workspaces import CPP, EXAMPLES, RUNTIME, Workspace, middleware
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 MODELS = {
     "line_follower_controller": (EXAMPLES / "line_follower" / "line_follower.rscd", None),
     "porter_controller": (CPP / "porter.rscd", CPP / "porter-config.json"),
+    "waypoints_controller": (RUNTIME / "waypoints.rscd", None),
 }
 
 

@@ -40,6 +40,7 @@ QUEUED = HERE / "events_executor"
 #: A managed node with times, stored data, parameters, and a command that it sends on change.
 MANAGED = HERE / "managed"
 CPP = HERE.parent / "m2t" / "cpp"
+RUNTIME = HERE.parent / "run" / "runtime"
 
 
 @dataclass(frozen=True)
@@ -87,6 +88,7 @@ def _packages(target: str) -> list[Package]:
         Package("cruise_controller", HERE.parent / "run" / "runtime" / "cruise.rscd", target),
         Package("patience_controller", HERE / "times" / "patience.rscd", target),
         Package("keeper_controller", HERE / "kept" / "keeper.rscd", target),
+        Package("waypoints_controller", RUNTIME / "waypoints.rscd", target, with_tests=True),
         Package("latch_controller", LATCHED / "latch.rscd", target, LATCHED / "controller-config.json"),
     ]
 

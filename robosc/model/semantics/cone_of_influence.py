@@ -7,14 +7,22 @@ from typing import TYPE_CHECKING, TypeAlias, TypeGuard
 
 from robosc.model import expression as ex
 from robosc.model import robosc
-from robosc.model.semantics.communication import data_type, event_of, port_event_of, sending_event, sent_type
+from robosc.model.semantics.communication import (
+    CONTROLLABLE,
+    data_type,
+    event_of,
+    port_event_of,
+    sending_event,
+    sent_type,
+)
 from robosc.model.semantics.inputs import ComputedValue, inputs_in, may_be_missing, readable
 from robosc.model.semantics.instances import PortInstance
+from robosc.model.semantics.state_values import InputContext, StateValue, with_command_values, with_state_values
 from robosc.model.semantics.typing import declared_type, read_from
-from robosc.model.semantics.walks import parts
+from robosc.model.semantics.walks import operands, parts
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from robosc.model.semantics.communication import PortEvent
     from robosc.model.semantics.inputs import InputSource
@@ -102,23 +110,26 @@ def cone_of_influence(instances: Instances) -> ConeOfInfluence:
     result = ConeOfInfluence({}, [], [])
     queue: list[InstanceVariable] = []
 
-    def read(expression: ex.Expression | None, within: Instance | None, computed: InstanceVariable | None) -> None:
-        for access in accesses(expression):
+    def read(
+        expression: ex.Expression | None,
+        within: Instance | None,
+        carrier: Carrier | None,
+        computed: InstanceVariable | None,
+    ) -> None:
+        readings = list(read_data(instances, expression, within, carrier, computed))
+        result.readings.extend(readings)
+        for access in _accesses_of_supervisor(expression, readings):
             variable = instances.variable(access, within)
             if variable is not None and variable not in result.variables:
                 result.variables[variable] = NeedReason(access, within, computed)
                 queue.append(variable)
 
     for condition in conditions(instances):
-        read(condition.expression, condition.within, None)
-        result.readings.extend(read_data(instances, condition.expression, condition.within, condition.carrier))
+        read(condition.expression, condition.within, condition.carrier, None)
     while queue:
         for assigned in assignments.get(queue.pop(0), ()):
             result.computations.append(assigned)
-            read(assigned.value, assigned.instance, assigned.variable)
-            result.readings.extend(
-                read_data(instances, assigned.value, assigned.instance, assigned.transition, assigned.variable)
-            )
+            read(assigned.value, assigned.instance, assigned.transition, assigned.variable)
     return result
 
 
@@ -216,6 +227,19 @@ def accesses(expression: ex.Expression | None) -> Iterator[robosc.Access]:
     return (part for part in parts(expression) if isinstance(part, robosc.Access))
 
 
+def _accesses_of_supervisor(expression: ex.Expression | None, readings: Sequence[InputRead]) -> Iterator[robosc.Access]:
+    """Iterate over the accesses in an expression except those in values that the node computes."""
+    computed = {reading.part for reading in readings if isinstance(reading.source, StateValue)}
+    pending = [expression]
+    while pending:
+        part = pending.pop()
+        if part is None or part in computed:
+            continue
+        if isinstance(part, robosc.Access):
+            yield part
+        pending += reversed(operands(part))
+
+
 def read_data(
     instances: Instances,
     expression: ex.Expression | None,
@@ -232,8 +256,15 @@ def read_data(
         return
     bounds = None if variable is None else _bounds(variable.type)
     value = declared_type(data_type(port.communication, event))
-    for part, carried in inputs_in(expression, port, event, bounds, is_condition=variable is None):
-        access = next(filter(_reads_event, parts(part)))
+    is_condition = variable is None
+    inputs = list(inputs_in(expression, port, event, bounds, is_condition=is_condition))
+    context = InputContext(instances, within, port, event, bounds, is_condition)
+    if _is_received(event):
+        inputs = list(with_state_values(inputs, expression, context))
+    elif is_condition:
+        inputs = list(with_command_values(inputs, expression, context))
+    for part, carried in inputs:
+        access = _first_access(part)
         reason = NeedReason(access, within, variable)
         yield InputRead(expression, part, carried, reason, value, is_required=isinstance(carrier, PortInstance))
         if variable is not None and isinstance(carried, ComputedValue) and may_be_missing(carried):
@@ -254,6 +285,16 @@ def _event(
         case robosc.RequirementTransition() if carrier.event is not None:
             return instances.port(carrier.event.communicationType, within), port_event_of(carrier.event)
     return None, None
+
+
+def _is_received(event: PortEvent) -> bool:
+    """Return whether the robot's nodes send the event, so that the node can compute values beside it."""
+    return event.kind not in CONTROLLABLE
+
+
+def _first_access(part: ex.Expression) -> robosc.Access | robosc.ErrorReason:
+    """Return the first access of a part to the event, else to anything."""
+    return next(filter(_reads_event, parts(part)), None) or next(accesses(part))
 
 
 def _reads_event(part: ex.Expression) -> TypeGuard[robosc.Access | robosc.ErrorReason]:

@@ -177,7 +177,7 @@ class Expansion:
         element, environment = node
         match element:
             case robosc.Access(item=robosc.FormalParameter() as parameter) if parameter in environment.arguments:
-                return self._argument(environment.arguments[parameter])
+                return (yield from self._argument(environment.arguments[parameter], element, environment))
             case robosc.Access(item=(robosc.Constant() | robosc.Condition()) as named):
                 written = yield from self._named(element, named, environment)
                 if written is not None:
@@ -197,11 +197,19 @@ class Expansion:
                 return robosc.Access(item=state or element.item, source=element.source)
         return (yield from self._copy(element, environment))
 
-    def _argument(self, argument: ex.Expression) -> ex.Expression:
-        if argument not in self._unplaced:
-            return copy_tree(argument)
-        self._unplaced.remove(argument)
-        return argument
+    def _argument(
+        self, argument: ex.Expression, access: robosc.Access, environment: _Environment
+    ) -> Generator[Any, Any, ex.Expression]:
+        """Return an argument, or the part of it that an access to its parameter reads."""
+        if not access.segments and argument in self._unplaced:
+            self._unplaced.remove(argument)
+            return argument
+        part = copy_tree(argument)
+        for segment in access.segments:
+            copied_segment = yield (segment, environment)
+            if isinstance(part, robosc.Access):
+                part.segments.append(copied_segment)
+        return part
 
     def _named(
         self, access: robosc.Access, item: robosc.Constant | robosc.Condition, environment: _Environment

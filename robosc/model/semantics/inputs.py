@@ -143,14 +143,14 @@ def readable(carried: ComputedValue) -> ComputedValue:
 
 def may_be_missing(carried: ComputedValue) -> bool:
     """Return whether an array element that the value needs may be missing, at an event that happens even then."""
-    return happens_anyway(carried.event) and any(map(_is_partial, parts(carried.expression)))
+    return happens_anyway(carried.event) and any(map(is_partial, parts(carried.expression)))
 
 
 def _reads(part: ex.Expression, inside: Sequence[_Reads], port: PortInstance, event: PortEvent) -> _Reads:
     """Summarize the reads of an expression from those of its operands. The operands of an access are its indices."""
     data, fixed = any(operand.data for operand in inside), all(operand.fixed for operand in inside)
     beyond, reason = any(operand.beyond for operand in inside), any(operand.reason for operand in inside)
-    elements = any(operand.elements for operand in inside) or _is_partial(part)
+    elements = any(operand.elements for operand in inside) or is_partial(part)
     if isinstance(part, robosc.ErrorReason):
         return _Reads(True, True, False, reason=True)
     if not isinstance(part, robosc.Access):
@@ -162,7 +162,7 @@ def _reads(part: ex.Expression, inside: Sequence[_Reads], port: PortInstance, ev
     return _Reads(True, fixed, path is None or not _is_finite(Data(port, event, path).type), elements, reason)
 
 
-def _is_partial(part: ex.Expression) -> bool:
+def is_partial(part: ex.Expression) -> bool:
     """Return whether a part may have no value: it reads an array element by index, or calls a partial function."""
     if isinstance(part, robosc.Access):
         return any(isinstance(segment, robosc.IndexSegment) for segment in part.segments)

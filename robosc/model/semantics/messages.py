@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from robosc.base.ros_types import Section
 from robosc.model import expression as ex
-from robosc.model import rosgraph
+from robosc.model import rosgraph, sct
 from robosc.model.reflection import contents, tree
 from robosc.model.semantics.evaluation import Value, saturate
 from robosc.model.semantics.operators import operator_of
@@ -169,6 +169,23 @@ def source_of(access: rosgraph.WireAccess) -> rosgraph.NodeVariable | None:
     while access.quantifier is not None:
         access = access.quantifier.array
     return access.variable
+
+
+def reads_stored(expression: ex.Expression) -> bool:
+    """Return whether an expression reads variables that the node stores. Parameters do not count."""
+    for _, part in tree(expression):
+        variable = part.variable if isinstance(part, rosgraph.NodeVariableReference) else None
+        if isinstance(part, rosgraph.WireAccess):
+            variable = source_of(part)
+        if variable is not None and not isinstance(variable, rosgraph.Parameter):
+            return True
+    return False
+
+
+def reads_state(expression: ex.Expression) -> bool:
+    """Return whether an expression reads more than data and parameters: stored data, or the supervisor's state."""
+    references = (sct.LocationReference, sct.VariableReference)
+    return reads_stored(expression) or any(isinstance(part, references) for _, part in tree(expression))
 
 
 def path_of(access: rosgraph.WireAccess) -> Path:
@@ -332,6 +349,13 @@ def limit_expressions(sending: rosgraph.Sending) -> list[ex.Expression]:
     fields = [field for limit in sending.limits for field in limit.fields]
     conditions = [*(limit.condition for limit in sending.limits), *(field.condition for field in fields)]
     return [*(condition for condition in conditions if condition is not None), *(field.value for field in fields)]
+
+
+def sent_values(sending: rosgraph.Sending) -> list[ex.Expression]:
+    """Return the conditions and values of provided data and of limits."""
+    fields = [field for data in sending.alternatives for field in data.fields]
+    parts = [part for field in fields for part in (field.condition, field.value)]
+    return [*(part for part in parts if part is not None), *limit_expressions(sending)]
 
 
 def paths_set(sending: rosgraph.Sending) -> list[Path]:

@@ -6,17 +6,19 @@ import math
 import random
 import struct
 from dataclasses import dataclass, field
-from itertools import islice
+from itertools import islice, product
 from typing import TYPE_CHECKING, Any
 
 from robosc.base.ros_types.wire import INTEGER_RANGES
 from robosc.engine import Engine
+from robosc.engine.state import Domain
 from robosc.model import expression as ex
 from robosc.model import rosgraph
 from robosc.model.reflection import tree
 from robosc.model.semantics import messages
 from robosc.model.semantics.communication import happens_anyway
-from robosc.model.semantics.messages import reads_elements
+from robosc.model.semantics.domains import domain
+from robosc.model.semantics.messages import reads_elements, reads_state, reads_stored
 from robosc.model.semantics.operators import UnreadableError
 from robosc.model.semantics.roles import event_name
 from robosc.run.node_tests.messages import Definition, Field, Leaf, Path, data_read, message
@@ -28,7 +30,11 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping, Sequence
 
     from robosc.base.ros_types import RosDistribution, Section
+    from robosc.engine.state import Value
     from robosc.model import sct
+
+    #: Events of a message, each with the values of its inputs by name.
+    _Events = tuple[tuple[str, tuple[tuple[str, Any], ...]], ...]
 
 #: Number of trials without a new sample after which the search ends.
 _TRIALS = 500
@@ -230,9 +236,11 @@ def _find_samples(kind: IncomingKind, values: Values, data: NodeData, receptions
         message = kind.message(tried)
         literals = tuple(_literal(conversion, message, data) for conversion in conversions)
         sample_lists = [kind.samples.setdefault(literals, [])]
-        events = _events(receptions, message, data)
-        if events is not None and ((literals, events) in classes or len(classes) < _CLASSES):
-            sample_lists.append(classes.setdefault((literals, events), Class(literals, events)).samples)
+        sample_lists += [
+            classes.setdefault((literals, events), Class(literals, events)).samples
+            for events in _events(receptions, message, data)
+            if (literals, events) in classes or len(classes) < _CLASSES
+        ]
         in_vain += 1
         for samples in sample_lists:
             if len(samples) < _SAMPLES_PER_CLASS and tried not in samples:
@@ -245,23 +253,38 @@ def _find_samples(kind: IncomingKind, values: Values, data: NodeData, receptions
     kind.classes = list(classes.values())
 
 
-def _events(
-    receptions: Sequence[rosgraph.Reception], message: Any, data: NodeData
-) -> tuple[tuple[str, tuple[tuple[str, Any], ...]], ...] | None:
-    """Return the inputs of the supervisor from a message; None if some of them can't be read."""
-    events = []
+def _events(receptions: Sequence[rosgraph.Reception], message: Any, data: NodeData) -> Iterator[_Events]:
+    """Yield the events of a message with their inputs; none if some of them can't be read.
+
+    An input that depends on the robot's state may have any value with this message.
+    """
+    choices: list[list[tuple[str, Any]]] = []
     try:
         for reception in receptions:
             for value in data.values_read(reception.event):
-                data.value(value, message)
-            if not happens_anyway(reception.event):
-                for assignment in reception.inputs:
+                if not reads_stored(value):
+                    data.value(value, message)
+            for assignment in reception.inputs:
+                name = assignment.input.name
+                if reads_state(assignment.value):
+                    choices.append([(name, value) for value in _possible(assignment.input.type)])
+                    continue
+                if not happens_anyway(reception.event):
                     data.value(assignment.value, message)
-            inputs = ((assignment.input.name, data.input(assignment, message)) for assignment in reception.inputs)
-            events.append((event_name(reception.event), tuple(inputs)))
+                choices.append([(name, data.input(assignment, message))])
     except UnreadableError:
-        return None
-    return tuple(events)
+        return
+    for inputs in islice(product(*choices), _CLASSES):
+        rest = iter(inputs)
+        yield tuple(
+            (event_name(reception.event), tuple(islice(rest, len(reception.inputs)))) for reception in receptions
+        )
+
+
+def _possible(kind: ex.Type) -> list[Value]:
+    known = Domain(kind)
+    low, high = domain(kind)
+    return [known.external(code) for code in range(low, min(high, low + _CLASSES) + 1)]
 
 
 def _tried(

@@ -63,6 +63,10 @@ class _Controller(DrivenController):
         return plan.place(self._control.saved, pauses=self.pauses)
 
 
+#: Maximum number of deviations in a row that show no new goal: inputs may depend on data that no plan follows.
+_IN_VAIN = 50
+
+
 class _Planned(NamedTuple):
     """Planned steps from a place, and the goals seen before."""
 
@@ -146,8 +150,11 @@ class Tour(Drive):
         try:
             self._pass_period()
             self._controller.look()
-            while any(self._stepped(step) for step in self._tour()):
-                pass
+            shown = len(self._shown)
+            in_vain = 0
+            while in_vain < _IN_VAIN and any(self._stepped(step) for step in self._tour()):
+                in_vain = 0 if len(self._shown) > shown else in_vain + 1
+                shown = len(self._shown)
         finally:
             self._controller.close()
         self.traces.append(self._lines.lines)

@@ -16,14 +16,15 @@ from robosc.model import expression as ex
 from robosc.model import rosgraph, sct
 from robosc.model.reflection import tree
 from robosc.model.semantics.communication import happens_anyway
-from robosc.model.semantics.evaluation import as_double
+from robosc.model.semantics.evaluation import as_double, single_precision
 from robosc.model.semantics.failures import REASON, UNREADABLE, brings_data, is_reason, possible_reasons
-from robosc.model.semantics.messages import is_structured, receptions, sent_messages, source_of
+from robosc.model.semantics.messages import is_structured, reads_stored, receptions, sent_messages, source_of
 from robosc.model.semantics.operators import UnreadableError
 from robosc.model.semantics.roles import event_name, plant_of
 from robosc.model.semantics.walks import operands
 from robosc.run.runtime.core.event_log import nest
-from robosc.run.runtime.core.node_data import NodeData, narrowed, within_range
+from robosc.run.runtime.core.node_data import NodeData, within_range
+from robosc.run.simulation.tracked_data import TrackedData
 from robosc.run.simulation.unreadable import Unreadable, past_end
 from robosc.run.simulation.wire_fit import DIGITS, WireFit, in_short, place
 
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
     from robosc.base.ros_types import RosTypes
     from robosc.engine import Engine
     from robosc.engine.state import Value
+    from robosc.run.simulation.tracked_data import Stored
 
 #: Stands for a value that the JSON text does not have.
 _ABSENT: Any = object()
@@ -131,6 +133,38 @@ class EventData:
         self._responses = {error: response for response, error in self._errors.items()}
         #: Whether the present event has no data, so that its data is that of a new message.
         self._is_new = False
+        #: Variables that the node stores, if inputs depend on them.
+        self.tracked = None if graph is None or self._node is None else TrackedData(engine, graph, self._node)
+        if graph is not None and self.tracked is not None and self.tracked.is_needed:
+            self.tracked.values = self._new_objects(graph)
+
+    def _new_objects(self, graph: rosgraph.RosGraph) -> dict[rosgraph.NodeVariable, Any]:
+        """Return the objects that the node stores at first: new data of their ROS types."""
+        return {
+            variable: self._received(event_name(variable.reception.event), _ABSENT, tuple(variable.path))
+            for variable in graph.variables
+            if variable.reception is not None and isinstance(variable.type, rosgraph.ObjectType)
+        }
+
+    @property
+    def stored(self) -> Stored:
+        """Variables that the node stores, if inputs depend on them."""
+        return {} if self.tracked is None else self.tracked.values
+
+    @stored.setter
+    def stored(self, values: Stored) -> None:
+        if self.tracked is not None:
+            self.tracked.values = values
+
+    def before(self, event: str, data: Mapping[str, Any], inputs: Mapping[str, Value]) -> None:
+        """Change the variables that the node stores, as an event does that is about to happen. Raises DataError."""
+        if self.tracked is not None:
+            value = data["value"] if "value" in data else self._provided(event)
+            self.tracked.before(
+                event,
+                inputs,
+                lambda read: self._received(event, value if value is _ABSENT else whole(value, read)),
+            )
 
     def inputs(self, event: str, data: Mapping[str, Any]) -> dict[str, Value]:
         """Return values of the event's inputs by their names. Raises DataError, and KeyError for an unknown event."""
@@ -170,13 +204,27 @@ class EventData:
         alternatives = self._commands[event].alternatives
         chosen = next((data for data in alternatives if self._node.is_in(data.location)), None)
         fields: dict[tuple[str, ...], Any] = {}
-        for field in () if chosen is None else chosen.fields:
-            if field.condition is None or self._node.value(field.condition):
-                value = within_range(self._node.value(field.value), field.type)
-                wire = None if self._defaults is None else self._defaults.wire_type(event, tuple(field.path))
-                is_short = isinstance(wire, Basic) and wire.name == "float32"
-                fields[tuple(field.path)] = narrowed(value) if is_short and isinstance(value, float) else value
+        if chosen is not None:
+            self._assign(event, chosen.fields, fields)
+        for limit in self._commands[event].limits:
+            if limit.condition is None or self._node.value(limit.condition, self._received(event, nest(fields))):
+                self._assign(event, limit.fields, fields)
         return nest(fields) if fields else _ABSENT
+
+    def _assign(
+        self, event: str, assignments: Sequence[rosgraph.FieldAssignment], fields: dict[tuple[str, ...], Any]
+    ) -> None:
+        """Change fields of a command by path. The values read the fields before, as the node would send them."""
+        assert self._node is not None
+        before = self._received(event, nest(fields))
+        changed: dict[tuple[str, ...], Any] = {}
+        for field in assignments:
+            if field.condition is None or self._node.value(field.condition, before):
+                path, value = tuple(field.path), within_range(self._node.value(field.value, before), field.type)
+                wire = None if self._defaults is None else self._defaults.wire_type(event, path)
+                is_single = isinstance(wire, Basic) and wire.name == "float32"
+                changed[path] = single_precision(value) if is_single and isinstance(value, float) else value
+        fields.update(changed)
 
     def _label(self, event_input: sct.Input, data: Any = None) -> str:
         """Return the text of an input, or its place in the data of its event."""
@@ -200,11 +248,32 @@ class EventData:
             return None
         for reaction in self._node.reactions(reception.event):
             guard, value = reaction.guard, data["value"]
-            fault = None if guard is None else past_end([guard], value)
-            if fault is None and (guard is None or self._node.value(guard, self._received(event, whole(value, guard)))):
-                fault = past_end([*reaction.needs, *(assigned.value for assigned in reaction.assignments)], value)
+            needs = [*reaction.needs, *(assigned.value for assigned in reaction.assignments)]
+            if any(map(reads_stored, [*needs, *([] if guard is None else [guard])])):
+                fault = self._fault(event, data, guard, needs)
+            else:
+                fault = None if guard is None else past_end([guard], value)
+                if fault is None and (
+                    guard is None or self._node.value(guard, self._received(event, whole(value, guard)))
+                ):
+                    fault = past_end(needs, value)
             if fault is not None:
                 return Unreadable(str(fault), self._errors.get(event))
+        return None
+
+    def _fault(
+        self, event: str, data: Mapping[str, Any], guard: ex.Expression | None, needs: Sequence[ex.Expression]
+    ) -> UnreadableError | None:
+        """Return why values that depend on stored data can't be read, or None. Given inputs need no data."""
+        if self.tracked is None or not self.tracked.is_needed or "where" in data:
+            return None
+        assert self._node is not None
+        try:
+            if guard is None or self._node.value(guard, self._received(event, whole(data["value"], guard))):
+                for needed in needs:
+                    self._node.value(needed, self._received(event, whole(data["value"], needed)))
+        except UnreadableError as fault:
+            return fault
         return None
 
     def _is_readable(self, reception: rosgraph.Reception, data: Any) -> bool:

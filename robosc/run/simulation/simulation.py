@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from robosc.base.ros_types import RosTypes
     from robosc.engine.state import State, Value
     from robosc.model import rosgraph
+    from robosc.run.simulation.tracked_data import Stored
 
 #: Maximum number of draws of random data for a command, until some are allowed.
 _DRAWS = 100
@@ -102,7 +103,7 @@ class Simulation:
         self.engine = Engine(model)
         self.data = EventData(self.engine, graph, types)
         self.trace: list[RequestResult] = []
-        self._before: list[State] = []
+        self._before: list[tuple[State, Stored]] = []
         self._inputs = {event_name(event): list(event.inputs) for plant in model.plants for event in plant.events}
 
     @property
@@ -120,13 +121,14 @@ class Simulation:
             return RequestResult(event, arguments, refusal(self.engine, arguments["of"]), whole_state(self.engine))
         inputs = self.data.inputs(event, data or {})
         self.engine.set_inputs(event, inputs)
-        before = self.engine.state
+        before = self.engine.state, self.data.stored
         by = (
             self.engine.blocked_by(event)
             or self.engine.inputs_blocked_by(event)
             or self.data.unreadable(event, data or {})
         )
         if by is None:
+            self.data.before(event, data or {}, inputs)
             self.engine.perform(event, inputs)
         violated = violated_names(self.engine, event) if by is Blocked.ASSUMPTION else ()
         happened = RequestResult(event, data or {}, by, whole_state(self.engine), violated)
@@ -139,7 +141,7 @@ class Simulation:
         """Take back the last event that happened and return it; None if there is none."""
         if not self.trace:
             return None
-        self.engine.state = self._before.pop()
+        self.engine.state, self.data.stored = self._before.pop()
         return self.trace.pop()
 
     def random_event(self, random: Random) -> tuple[str, dict[str, Any]] | None:
@@ -206,19 +208,15 @@ class LoopSimulation:
     ) -> None:
         """`types`: the definitions of ROS types, for fields missing in data; None: those of the environment."""
         self._happened: list[str] = []
-        hooks = Hooks(self._set_data, self._happened.append, livelock=lambda: self._happened.append("livelock"))
+        hooks = Hooks(self._before, self._happened.append, lambda: self._happened.append("livelock"))
         self._loop = ControlLoop(model, settings, hooks)
         self.data = EventData(self._loop.engine, graph, types)
+        #: Data and inputs of the events that a step gives.
+        self._given: dict[str, tuple[Mapping[str, Any], Mapping[str, Value]]] = {}
         self._commands = {
             event.name for event in self._loop.engine.executed.events if event.role is Role.trigger and event.inputs
         }
         self._in_batch = False
-
-    def _set_data(self, event: str) -> bool:
-        """Set the inputs of a command to the data that it sends. No event is withheld."""
-        if event in self._commands:
-            self._loop.engine.set_inputs(event, self.data.inputs(event, {}))
-        return True
 
     @property
     def events(self) -> list[str]:
@@ -246,9 +244,10 @@ class LoopSimulation:
             violated = violated_names(self._loop.engine, event) if by is Blocked.ASSUMPTION else []
             error = self.data.error_of(event) if violated else by.error if isinstance(by, Unreadable) else None
             if error is not None:
-                self._loop.perform(error, self.data.inputs(error, self.data.of_unreadable(data)))
+                data_of_error = self.data.of_unreadable(data)
+                self._perform(error, data_of_error, self.data.inputs(error, data_of_error))
             elif by is None:
-                self._loop.perform(event, inputs)
+                self._perform(event, data, inputs)
             if not self._in_batch:
                 self._loop.end()
         details = dict(data) if event in (WAIT, REFUSE) else {}
@@ -261,6 +260,21 @@ class LoopSimulation:
             "happened": list(self._happened),
             "state": whole_state(self._loop.engine),
         }
+
+    def _perform(self, event: str, data: Mapping[str, Any], inputs: Mapping[str, Value]) -> None:
+        self._given = {event: (data, inputs)}
+        self._loop.perform(event, inputs)
+        self._given = {}
+
+    def _before(self, event: str) -> bool:
+        """Set the inputs of a command to the data that it sends, and change the variables that the node stores."""
+        data, inputs = self._given.get(event, ({}, {}))
+        if event in self._commands:
+            inputs = self.data.inputs(event, {})
+            self._loop.engine.set_inputs(event, inputs)
+        if self._loop.engine.permits_inputs(event):
+            self.data.before(event, data, inputs)
+        return True
 
     def _wait(self, milliseconds: int) -> None:
         """Let time pass; timers that expire on the way fire at their time."""

@@ -51,6 +51,7 @@ MODELS = {
     "scout": ROOT / "tests" / "ros" / "faults" / "scout.rscd",
     "mission": ROOT / "tests" / "run" / "runtime" / "mission.rscd",
     "kept": ROOT / "tests" / "run" / "runtime" / "kept.rscd",
+    "waypoints": ROOT / "tests" / "run" / "runtime" / "waypoints.rscd",
     "keeper": ROOT / "tests" / "ros" / "kept" / "keeper.rscd",
     "crane": ROOT / "tests" / "run" / "simulation" / "crane.rscd",
     "push_ball": ROOT / "examples" / "push_ball" / "push_ball.rscd",

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 _Definition = TypeVar("_Definition")
 _LITERALS = (ex.BooleanLiteral, ex.IntegerLiteral, ex.DoubleLiteral, ex.StringLiteral)
 _TOKEN = re.compile(r'"(?:[^"\\]|\\.)*+"?|\d+(?:\.\d+)?|\w+|\.\.|=>|!=|<=|>=|[^\s()^]')
+#: Functions that the supervisor computes, of integers.
+_OF_SUPERVISOR = ("abs", "min", "max", "mod")
 #: Requirements that follow events: they have states of their own.
 OBSERVERS = (robosc.OrderRequirement, robosc.CountRequirement, robosc.AutomatonRequirement)
 
@@ -89,6 +91,8 @@ class Names:
         self.robot = robot
         self._meanings: dict[ex.Expression, Meaning | Data] = {}
         self._changing: dict[ex.Expression, bool] = {}
+        #: Words of expressions that the text names otherwise than their meaning, and of those with a place in a plant.
+        self._named: dict[ex.Expression, tuple[str, ...]] = {}
         #: Instances by component and number. The number of a component that is no fleet is None.
         self._of: dict[tuple[robosc.Component, int | None], Instance] = {}
         for component in robot.definitions:
@@ -277,7 +281,8 @@ class Names:
             case robosc.FormalParameter():
                 argument: ex.Expression = yield place.bound[item]
                 # Arguments of an instance are constant; arguments of a function may be any expressions.
-                return self._folded(argument) if isinstance(item.eContainer(), robosc.Component) else argument
+                is_constant = isinstance(item.eContainer(), robosc.Component)
+                return self._folded(argument) if is_constant else (yield from self._part(argument, access, place))
             case robosc.EnumValue():
                 return self.leaf(Literal(item.name))
             case robosc.Parameter():
@@ -286,20 +291,44 @@ class Names:
                 owner = (named.name, ".") if named is not None else ()
                 return self.leaf(Data((*owner, item.name), None))
             case robosc.RequirementState():
-                return self.leaf(At(Slot(self._automaton(access, item.eContainer(), place)), item.name))
+                automaton = item.eContainer()
+                reached = self.leaf(At(Slot(self._automaton(access, automaton, place)), item.name))
+                return self._called(reached, automaton.name, item.name)
         is_member = access.component is not None or _is_member(item)
         instance = self._instance_of(access.component, place, access.index) if is_member else None
         match item:
             case robosc.State() if instance is not None:
-                return self.leaf(At(Slot(instance.plant), item.name))
+                return self._called(self.leaf(At(Slot(instance.plant), item.name)), instance.name, item.name)
             case robosc.Variable() if instance is not None:
-                return self.leaf(Slot(instance.plant, item.name))
+                return (yield from self._variable(access, instance, place))
             case robosc.Service() | robosc.Action() if instance is not None:
                 return self._running(item, instance)
         if not isinstance(item, robosc.Constant | robosc.Condition):
             raise NotReadError(item)
         value: ex.Expression = yield item.value, self._inside(item, instance)
         return self._folded(value) if isinstance(item, robosc.Constant) else value
+
+    def _variable(
+        self, access: robosc.Access, instance: Instance, place: Environment
+    ) -> Generator[Any, Any, ex.Expression]:
+        """Return a variable of the supervisor, or data that only the node stores."""
+        variable = access.item
+        assert isinstance(variable, robosc.Variable)
+        if self._is_data(variable.type):
+            start = self.leaf(Data((instance.name, ".", variable.name), None))
+            return (yield from self._part(start, access, place))
+        return self._called(self.leaf(Slot(instance.plant, variable.name)), instance.name, variable.name)
+
+    def _is_data(self, declared: robosc.DataType) -> bool:
+        """Return whether a variable of the type exists only in the node."""
+        named = declared.type if isinstance(declared, robosc.ComplexDataTypeReference) else None
+        only_node = robosc.DoubleDataType | robosc.StringDataType | robosc.Array
+        return isinstance(declared, only_node) or isinstance(named, robosc.ObjectDataType)
+
+    def _called(self, expression: ex.Expression, *names: str) -> ex.Expression:
+        """Return the expression, which the text calls by these names with dots between them."""
+        self._named[expression] = tuple(word for name in names for word in (".", name))[1:]
+        return expression
 
     def _automaton(self, access: robosc.Access, automaton: robosc.AutomatonRequirement, place: Environment) -> Plant:
         """Return the plant of an automaton: with `each`, that of the instance in brackets or at hand."""
@@ -313,8 +342,10 @@ class Names:
         """Return the condition that a service or action was requested and its end is not known."""
         slot = Slot(Plant(type(call).__name__.lower(), f"{instance.name}.{call.name}"))
         if isinstance(call, robosc.Service):
-            return self.leaf(At(slot, "wait_for_response"))
-        return ex.Disjunction(left=self.leaf(At(slot, "executing")), right=self.leaf(At(slot, "canceling")))
+            running = self.leaf(At(slot, "wait_for_response"))
+        else:
+            running = ex.Disjunction(left=self.leaf(At(slot, "executing")), right=self.leaf(At(slot, "canceling")))
+        return self._called(running, instance.name, call.name, "running")
 
     def _folded(self, constant: ex.Expression) -> ex.Expression:
         """Return the value of an expanded constant expression, as an expression."""
@@ -347,16 +378,26 @@ class Names:
         return reduce(lambda left, right: combined(left=left, right=right), bodies, start)
 
     def _data(self, access: robosc.Access, place: Environment) -> Generator[Any, Any, ex.Expression]:
-        path: list[str] = []
-        words = [access.item.name if access.item else "value"]
-        whole = access.item is None
+        path = None if access.item else ()
+        start = self.leaf(Data((access.item.name if access.item else "value",), path))
+        return (yield from self._part(start, access, place))
+
+    def _part(
+        self, start: ex.Expression, access: robosc.Access, place: Environment
+    ) -> Generator[Any, Any, ex.Expression]:
+        """Return the part of some data to which the segments of an access lead."""
+        whole = self._meanings.get(start)
+        if not access.segments:
+            return start
+        assert isinstance(whole, Data)
+        words, path = list(whole.words), whole.path
         for segment in access.segments:
             if isinstance(segment, robosc.PropertySegment):
-                path.append(segment.property.name)
+                path = None if path is None else (*path, segment.property.name)
                 words += [".", segment.property.name]
                 continue
             assert isinstance(segment, robosc.IndexSegment)
-            whole = False
+            path = None
             words += ["["]
             if segment.first is None:
                 words.append(str(segment.index))
@@ -365,12 +406,31 @@ class Names:
             if segment.last is not None:
                 words += ["..", *self._words((yield segment.last, place))]
             words += ["]"]
-        return self.leaf(Data(tuple(words), tuple(path) if whole else None))
+        return self.leaf(Data(tuple(words), path))
 
     def words(self, expression: ex.Expression) -> tuple[str, ...] | None:
         """Return the text of an expression over data as words without parentheses; None if it reads slots."""
         changing = fold(self._changes, expression, memo=self._changing)
         return None if changing else tuple(self._words(expression))
+
+    def all_words(self, expression: ex.Expression) -> tuple[str, ...]:
+        """Return the text of an expression, also over slots, as `words` does."""
+        return tuple(self._words(expression))
+
+    def words_of_node(self, expression: ex.Expression) -> tuple[str, ...] | None:
+        """Return the text of an expression over slots that only the node can compute, as `words` does.
+
+        None if the supervisor can compute it.
+        """
+        is_of_node = fold(self._needs_node, expression)
+        return tuple(self._words(expression)) if is_of_node else None
+
+    def _needs_node(self, part: ex.Expression, inside: Sequence[bool]) -> bool:
+        """Return whether only the node can compute a part. The supervisor computes an `and` of others itself."""
+        if isinstance(part, ex.Conjunction | ex.Disjunction | ex.Implication | ex.Negation):
+            return all(inside)
+        is_of_node = isinstance(part, ex.FunctionCall) and part.function not in _OF_SUPERVISOR
+        return is_of_node or isinstance(self._meanings.get(part), Data) or any(inside)
 
     def _changes(self, part: ex.Expression, inside: Sequence[bool]) -> bool:
         return isinstance(self._meanings.get(part), Slot | At) or any(inside)
@@ -380,8 +440,12 @@ class Names:
 
     def _part_words(self, part: ex.Expression, inside: list[list[str]]) -> list[str]:
         meaning = self._meanings.get(part)
+        if part in self._named:
+            return list(self._named[part])
         if isinstance(meaning, Data):
             return list(meaning.words)
+        if isinstance(meaning, Slot | At):
+            return []  # a part of an expression that the text calls by a name
         if isinstance(meaning, Literal):
             return [str(meaning)]
         if isinstance(part, ex.Conditional):

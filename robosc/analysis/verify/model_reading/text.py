@@ -329,7 +329,7 @@ class _TextReading:
         Returns None if the value is always readable.
         """
         event = self.plants.events.get(name)
-        words = self.names.words(value) or ()
+        words = self.words(value, name) or ()
         for carried in event.element.inputs if event is not None and name.name in _ENDS else ():
             if carried.text is not None and words_of(carried.text) == (*words, "=", *words):
                 self.machine.events[name].inputs[carried.name] = BOOLEANS
@@ -338,6 +338,20 @@ class _TextReading:
             raise UnlikeError(f"the plants have no input for whether `{''.join(words)}` can be read", value)
         return None
 
+    def words(self, part: ex.Expression, name: EventName) -> tuple[str, ...] | None:
+        """Return the text of a part that the node computes for the event; None if the supervisor computes it.
+
+        Where an end reads an array, the whole condition is false without the array. The node computes it.
+        """
+        words = self.names.words(part)
+        if words is not None or name.name.startswith("c_"):
+            return words
+        words = self.names.words_of_node(part)
+        if words is None and name.name in _ENDS:
+            whole = self.names.all_words(part)
+            words = whole if "[" in whole else None
+        return words
+
     def replace_inputs(
         self, part: ex.Expression, name: EventName, assigned: Slot | None
     ) -> Generator[Any, Any, ex.Expression]:
@@ -345,7 +359,7 @@ class _TextReading:
         event = self.plants.events.get(name)
         inputs = event.element.inputs if event is not None else []
         computed = [(words_of(carried.text), carried.name) for carried in inputs if carried.text is not None]
-        words = self.names.words(part) if computed else None
+        words = self.words(part, name) if computed else None
         alike = {input_name: event.inputs[input_name] for text, input_name in computed if event and text == words}
         if alike:
             slot_range = None if assigned is None else self.machine.domains[assigned]

@@ -127,9 +127,13 @@ def _named(named: rsc.NamedExpression) -> Iterator[Finding]:
                 yield from _constant(bound, DOUBLE, f"a bound of {name}")
         case rsc.Function():
             for parameter in named.parameters:
-                yield from _of_one_value(parameter.type, f"parameter `{parameter.name}` of {name}")
+                if declared_type(parameter.type) == NONE:
+                    yield from _of_one_value(parameter.type, f"parameter `{parameter.name}` of {name}")
             check = ExpressionCheck(_FUNCTION)
-            check.expect(named.value, declared_type(named.type), f"the value of {name}")
+            if check.type(named.value) == declared_type(named.type):
+                yield from _of_one_value(named.type, f"function {name}")
+            else:
+                check.expect(named.value, declared_type(named.type), f"the value of {name}")
             yield from check.findings
 
 

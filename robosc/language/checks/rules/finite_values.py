@@ -22,7 +22,7 @@ from robosc.language.checks.rule import Finding, rule
 from robosc.language.checks.supervisor_limits import Fault, function_faults, readings, supervised_faults, table_faults
 from robosc.model import robosc as rsc
 from robosc.model.semantics.communication import sent_type
-from robosc.model.semantics.cone_of_influence import ConeOfInfluence, accesses
+from robosc.model.semantics.cone_of_influence import ConeOfInfluence, accesses, all_assignments
 from robosc.model.semantics.expansion import CLAMP
 from robosc.model.semantics.inputs import ComputedValue, Data, property_path
 from robosc.model.semantics.instances import MOST
@@ -42,12 +42,12 @@ from robosc.model.semantics.typing import (
 from robosc.model.semantics.walks import branches
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from robosc.language.checks.edits import Hint
     from robosc.model import expression as ex
     from robosc.model.semantics.cone_of_influence import InputRead
-    from robosc.model.semantics.instances import Instances
+    from robosc.model.semantics.instances import Instances, InstanceVariable
 
 LEAST, LARGEST = INTEGER_RANGES["int64"]
 
@@ -125,7 +125,23 @@ def _stored(base: rsc.Base) -> set[rsc.Variable]:
 _KEPT_REPAIR = "store the relevant part in a variable, such as `do some := size(value.…) > 0`"
 
 
-def _without_domain(_: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
+#: Examples of conditions on data that the supervisor does not hold, with the name of a variable for each.
+_EXAMPLES: Mapping[Type, tuple[str, str]] = {DOUBLE: ("near", "< 0.5"), STRING: ("known", '= "…"')}
+
+
+def _variable_repair(owned: InstanceVariable, value_type: Type, instances: Instances) -> str:
+    """Return the repair for a variable that the supervisor cannot hold: another that the event sets."""
+    if isinstance(value_type, ArrayType | ObjectType):
+        return _KEPT_REPAIR
+    values = (place.value for place in all_assignments(instances) if place.variable == owned)
+    access = next((access for value in values for access in accesses(value) if access.value), None)
+    if access is None:
+        return _enum_repair(str(value_type))
+    name, condition = _EXAMPLES[value_type]
+    return f"set another variable where the data arrives, such as `do {name} := {RoboscPrinter()(access)} {condition}`"
+
+
+def _without_domain(instances: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
     for owned, reason in result.variables.items():
         value_type = declared_type(owned.type)
         if value_type in {DOUBLE, STRING} or isinstance(value_type, ArrayType | ObjectType):
@@ -135,7 +151,7 @@ def _without_domain(_: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
                 reason,
                 f"variable `{name}` is {value_type}, and the supervisor needs it, expected boolean, "
                 "an integer with a range or an enum: its states are finitely many",
-                _KEPT_REPAIR if isinstance(value_type, ArrayType | ObjectType) else _enum_repair(str(value_type)),
+                _variable_repair(owned, value_type, instances),
             )
     for reading in readings(result):
         access = reading.reason.access

@@ -367,18 +367,12 @@ def _finite_value(kind: str, value: Value, path: Sequence[str]) -> bool | int | 
     return saturate(value, low, high)
 
 
-def narrowed(value: float, code: str = "f") -> float:
-    """Return a number as a `float` (`f`) or `double` (`d`) of C holds it. Raises OverflowError."""
-    (stored,) = struct.unpack(code, struct.pack(code, value))
-    return float(stored)
-
-
 def _narrowed(value: float, code: str, path: Sequence[str]) -> float:
     try:
-        stored = narrowed(value, code)
+        (narrowed,) = struct.unpack(code, struct.pack(code, value))
     except OverflowError:
         raise NotFiniteError(path) from None
-    return _finite(stored, path)
+    return _finite(float(narrowed), path)
 
 
 def _finite(value: float, path: Sequence[str]) -> float:
