@@ -249,7 +249,8 @@ class EventData:
         for reaction in self._node.reactions(reception.event):
             guard, value = reaction.guard, data["value"]
             needs = [*reaction.needs, *(assigned.value for assigned in reaction.assignments)]
-            if any(map(reads_stored, [*needs, *([] if guard is None else [guard])])):
+            is_followed = self.tracked is not None and self.tracked.is_needed
+            if is_followed and any(map(reads_stored, [*needs, *([] if guard is None else [guard])])):
                 fault = self._fault(event, data, guard, needs)
             else:
                 fault = None if guard is None else past_end([guard], value)
@@ -265,7 +266,7 @@ class EventData:
         self, event: str, data: Mapping[str, Any], guard: ex.Expression | None, needs: Sequence[ex.Expression]
     ) -> UnreadableError | None:
         """Return why values that depend on stored data can't be read, or None. Given inputs need no data."""
-        if self.tracked is None or not self.tracked.is_needed or "where" in data:
+        if "where" in data:
             return None
         assert self._node is not None
         try:

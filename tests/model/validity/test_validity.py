@@ -262,7 +262,7 @@ BROKEN: list[tuple[Callable[[Any], None], list[str]]] = [
     (
         _input_in_guard,
         [
-            "an input can be read only in guards and updates of edges, and in requirements",
+            "an input can be read only in guards, updates of edges, and requirements",
             "an initial value must be a literal",
         ],
     ),
