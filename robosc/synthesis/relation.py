@@ -206,10 +206,17 @@ class EventRelation:
             ]
         )
 
-    def between(self, before: Mapping[Element, int], after: Mapping[Element, int]) -> Diagram:
-        """Return the input values with which the event leads from one state to another, both given by codes."""
+    def between(
+        self, before: Mapping[Element, int], after: Mapping[Element, int], condition: Diagram | None = None
+    ) -> Diagram:
+        """Return the input values with which the event leads from one state to another, both given by codes.
+
+        `condition` is a further condition on the state before and the inputs.
+        """
         encoding = self._encoding
         result = self.with_inputs() & encoding.state(before)
+        if condition is not None:
+            result &= condition
         for element in self.changed:
             result &= encoding.becomes(element, arithmetic.constant(encoding.diagrams, after[element]))
         domains = encoding.layout.state

@@ -81,6 +81,8 @@ _REASONS = {
 }
 #: Events that happen even if their data cannot be read.
 _ENDS = ("u_error", "u_canceled")
+#: Events after which an action has no goal.
+_WITHOUT_GOAL = ("u_response", "u_error", "u_canceled", "c_reset")
 _UNITS = {robosc.TimeUnit.ms: 1, robosc.TimeUnit.s: 1000, robosc.TimeUnit.min: 60_000}
 
 
@@ -301,8 +303,14 @@ class _TextReading:
         place: Environment,
         name: EventName | None = None,
         assigned: Slot | None = None,
+        *,
+        of_goal: bool = False,
     ) -> Condition:
-        """Return an expression in the text of an instance, in a transition on an event, as a condition."""
+        """Return an expression in the text of an instance as a condition.
+
+        `name` is the event whose data it reads. `of_goal`: it reads the data of the running goal instead, as the
+        action's plant holds them.
+        """
         written = self.names.written_out(expression, place)
         if name is not None:
             present = None if assigned is None else self.present(written, name)
@@ -319,6 +327,9 @@ class _TextReading:
             if isinstance(target, Data):
                 words = "".join(target.words)
                 raise UnlikeError(f"the text reads `{words}`, for which the plants have no input", expression)
+            if of_goal and isinstance(target, EventInput):
+                assert name is not None
+                return self.goal(name, target.name)
             return target
 
         return compile_condition(written, meaning)
@@ -360,7 +371,7 @@ class _TextReading:
             return self.names.leaf(EventInput(candidate))
         target = self.names.meaning(part) if isinstance(part, robosc.Access) else None
         if isinstance(target, Data) and target.path is not None:
-            expected_name = "_".join(["i", name.name.removeprefix("u_"), *target.path])
+            expected_name = "_".join(["i", name.name.partition("_")[2], *target.path])
             fitted = [
                 carried.name
                 for carried in inputs
@@ -384,6 +395,8 @@ class _TextReading:
         declared: Any = None
         if isinstance(communication, robosc.Message):
             declared = communication.type
+        elif isinstance(communication, robosc.Service | robosc.Action) and name.name == "c_trigger":
+            declared = communication.requestType
         elif isinstance(communication, robosc.Service):
             declared = communication.responseType
         elif isinstance(communication, robosc.Action):
@@ -438,25 +451,43 @@ class _TextReading:
     def required(self) -> None:
         """Add requirements to the start of their communications, and to the cancel of actions.
 
-        An action is canceled if one of its requirements does not hold.
+        An action is canceled if one of its requirements does not hold with the data of its goal.
         """
         known = (robosc.CommunicationRequirement, robosc.StateInvariant, robosc.ReachabilityRequirement, *OBSERVERS)
         for requirement, _ in self.names.definitions(robosc.Requirement):
             if not isinstance(requirement, known):
                 raise NotReadError(requirement)
-        starting: dict[EventName, list[Restriction]] = {}
+        running: dict[Plant, list[Restriction]] = {}
         for statement, place in self.names.definitions(robosc.CommunicationRequirement):
             value = not isinstance(statement, robosc.DisablesRequirement)
-            condition = self.condition(statement.condition, place)
             for name in dict.fromkeys(
                 self.of(reference, "c_trigger", place) for reference in statement.target.communicationTypes
             ):
-                starting.setdefault(name, []).append(Restriction(condition, value, statement))
-        for name, restrictions in starting.items():
-            self.machine.events[name].restrictions += restrictions
+                condition = self.condition(statement.condition, place, name)
+                self.machine.events[name].restrictions.append(Restriction(condition, value, statement))
+                if name.plant.kind == "action":
+                    condition = self.condition(statement.condition, place, name, of_goal=True)
+                    running.setdefault(name.plant, []).append(Restriction(condition, value, statement))
         for name, event in self.machine.events.items():
             if event.kind == "cancel":
-                event.restrictions.append(_broken(starting.get(EventName(name.plant, "c_trigger"), []), event.element))
+                event.restrictions.append(_broken(running.get(name.plant, []), event.element))
+
+    def goal(self, name: EventName, input_name: str) -> Slot:
+        """Return the variable that holds an input of an action's start while its goal is running.
+
+        Without a goal, it has its first value.
+        """
+        slot = Slot(name.plant, f"goal_{input_name.removeprefix('i_trigger_')}")
+        if slot not in self.machine.domains:
+            trigger = self.machine.events[name]
+            domain, source = trigger.inputs[input_name], trigger.element
+            self.slot(slot, domain, domain[0], source)
+            trigger.participants.append(_stored(slot, input_name, source))
+            for ending in _WITHOUT_GOAL:
+                self.machine.events[EventName(name.plant, ending)].participants.append(
+                    _always({slot: domain[0]}, source, frozenset({slot}))
+                )
+        return slot
 
     def observer_slots(self) -> None:
         for requirement, place in self.names.definitions(robosc.Requirement):
@@ -588,8 +619,12 @@ def _chosen(
     return Participant(step, frozenset().union(*(condition.reads for condition, _ in conditions if condition)), source)
 
 
-def _always(writes: Mapping[Slot, Value], source: ex.Located) -> Participant:
-    return Participant(lambda *_: EventEffect(writes, source), frozenset(), source)
+def _always(writes: Mapping[Slot, Value], source: ex.Located, reads: frozenset[Slot] = frozenset()) -> Participant:
+    return Participant(lambda *_: EventEffect(writes, source), reads, source)
+
+
+def _stored(slot: Slot, input_name: str, source: ex.Located) -> Participant:
+    return Participant(lambda _, inputs: EventEffect({slot: inputs[input_name]}, source), frozenset({slot}), source)
 
 
 def _only_where(condition: Condition, source: ex.Located) -> Participant:
