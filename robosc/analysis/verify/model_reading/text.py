@@ -21,6 +21,7 @@ from robosc.analysis.verify.model_reading.machine import (
     Meaning,
     Participant,
     Plant,
+    ProvidedConstant,
     Restriction,
     Slot,
     Timer,
@@ -36,6 +37,7 @@ from robosc.analysis.verify.model_reading.names import (
     NotReadError,
     words_of,
 )
+from robosc.analysis.verify.model_reading.sent_data import computed_input, constant_data
 from robosc.model import expression as ex
 from robosc.model import robosc
 from robosc.model.semantics.walks import operands, walk, with_operands
@@ -110,6 +112,7 @@ class _TextReading:
         self.plants = plants
         self.machine = Machine()
         self.ports: dict[Plant, _Port] = {}
+        self.statements: dict[Plant, Sequence[tuple[robosc.ProvideStatement, Environment]]] = {}
 
     def run(self) -> Machine:
         for instance in self.names:
@@ -129,6 +132,8 @@ class _TextReading:
             if isinstance(requirement, OBSERVERS):
                 self.observer(requirement, place, self.names.observer(requirement, place))
         self.claims()
+        for plant, statements in self.statements.items():
+            self.machine.provided[plant] = [self.provided_constant(*statement) for statement in statements]
         return self.machine
 
     # Communication
@@ -368,6 +373,7 @@ class _TextReading:
             candidate = next(iter(alike))
             domain = _REASONS[name.plant.kind] if words == ("error",) else alike[candidate]
             self.machine.events[name].inputs[candidate] = domain
+            self.machine.events[name].parts[candidate] = part
             return self.names.leaf(EventInput(candidate))
         target = self.names.meaning(part) if isinstance(part, robosc.Access) else None
         if isinstance(target, Data) and target.path is not None:
@@ -379,6 +385,7 @@ class _TextReading:
             ]
             if len(fitted) == 1:
                 self.machine.events[name].inputs[fitted[0]] = self.carried(name, target.path)
+                self.machine.events[name].parts[fitted[0]] = part
                 return self.names.leaf(EventInput(fitted[0]))
         inside = operands(part)
         if not inside:
@@ -422,6 +429,7 @@ class _TextReading:
             self.choice(Plant("data", _plant(*port).origin), outside or statements)
 
     def choice(self, plant: Plant, statements: Sequence[tuple[robosc.ProvideStatement, Environment]]) -> None:
+        self.statements[plant] = statements
         names = ("none", *(f"d{number}" for number in range(1, len(statements) + 1)))
         slot = self.locations(plant, names, "none", names, statements[0][0])
         conditions = [
@@ -435,6 +443,22 @@ class _TextReading:
         self.event(plant, "c_none", statements[0][0]).participants.append(
             _chosen(slot, "none", denied, statements[0][0])
         )
+
+    def provided_constant(self, statement: robosc.ProvideStatement, place: Environment) -> ProvidedConstant:
+        """Return a statement with the inputs that its command has if it sends these data."""
+        port = self.names.port(statement.communicationType, place)
+        trigger = self.machine.events[EventName(_plant(*port), "c_trigger")]
+        sent = constant_data(statement.data, place, self.names)
+        if sent is None:
+            return ProvidedConstant(statement, None)
+        communication: Any = port[1]
+        declared = communication.type if isinstance(communication, robosc.Message) else communication.requestType
+        inputs: dict[str, Value] = {}
+        for name, part in trigger.parts.items():
+            value = computed_input(part, sent, declared, self.names)
+            if value is not None:
+                inputs[name] = saturate(value, trigger.inputs[name])
+        return ProvidedConstant(statement, inputs)
 
     # Assumptions
 
