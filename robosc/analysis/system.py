@@ -287,16 +287,20 @@ class SynthesizedSystem(SupervisedSystem):
         automata = {requirement for requirement in relation.requirements if requirement.automaton is not None}
         return self._of_running_goal(relation, self._permitted(relation, left_out | automata))
 
+    def goal_satisfies(self, relation: EventRelation, requirement: sct.Requirement) -> Diagram:
+        """Return the states in which the data of a running goal satisfy a requirement on its start."""
+        return self._of_running_goal(relation, relation.condition_of(requirement))
+
     def _of_running_goal(self, relation: EventRelation, condition: Diagram) -> Diagram:
         """Return a condition on the data of a start as a condition on the variables that hold these data."""
         equal, diagrams = self.encoding.equal, self.diagrams
-        held = [
+        copies = [
             equal(update.variable, update.value.input)
             for edge in relation.own_edges
             for update in edge.updates
             if isinstance(update.value, sct.InputReference)
         ]
-        return and_exists(condition, diagrams.all_of(held), relation.inputs) if held else condition
+        return and_exists(condition, diagrams.all_of(copies), relation.inputs) if copies else condition
 
     def _permitted(self, relation: EventRelation, left_out: AbstractSet[sct.StatedRequirement]) -> Diagram:
         """Return the states, and inputs of a command, in which the requirements that are not left out hold."""

@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     from robosc.synthesis.bdd import Diagram
     from robosc.synthesis.encoding import Domain, Element
 
+    #: Element with a value that is no location.
+    _Cell: TypeAlias = sct.DiscreteVariable | sct.Input
+
 #: Codes of a domain as ranges, both ends included, ascending, with gaps between them.
 Ranges: TypeAlias = "list[tuple[int, int]]"
 #: Value outside of the model: a location or a literal by its name.
@@ -94,27 +97,25 @@ def _size(ranges: Ranges) -> int:
     return sum(last - first + 1 for first, last in ranges)
 
 
-def _is_integer(element: Element) -> TypeGuard[sct.DiscreteVariable]:
-    return isinstance(element, sct.DiscreteVariable) and isinstance(element.type, ex.IntegerType)
+def _is_integer(element: Element) -> TypeGuard[_Cell]:
+    return not isinstance(element, sct.Plant) and isinstance(element.type, ex.IntegerType)
 
 
 def _is(element: Element, code: int) -> ex.Expression:
     if isinstance(element, sct.Plant):
         return sct.LocationReference(location=element.locations[code])
-    assert isinstance(element, sct.DiscreteVariable)
     if isinstance(element.type, ex.BooleanType):
-        reference = sct.VariableReference(variable=element)
-        return reference if code else ex.Negation(operand=reference)
+        return _reference(element) if code else ex.Negation(operand=_reference(element))
     return _compared(ex.Equation, element, code)
 
 
 def _is_not(element: Element, code: int) -> ex.Expression:
-    if isinstance(element, sct.DiscreteVariable) and isinstance(element.type, ex.EnumerationType):
+    if not isinstance(element, sct.Plant) and isinstance(element.type, ex.EnumerationType):
         return _compared(ex.Inequation, element, code)
     return ex.Negation(operand=_is(element, code))
 
 
-def _in_range(element: sct.DiscreteVariable, size: int, first: int, last: int) -> ex.Expression:
+def _in_range(element: _Cell, size: int, first: int, last: int) -> ex.Expression:
     if first == last:
         return _compared(ex.Equation, element, first)
     bounds = []
@@ -125,14 +126,20 @@ def _in_range(element: sct.DiscreteVariable, size: int, first: int, last: int) -
     return _all(bounds)
 
 
-def _compared(operator: type[ex.BinaryExpression], element: sct.DiscreteVariable, code: int) -> ex.Expression:
-    return operator(left=sct.VariableReference(variable=element), right=_literal(element, code))
+def _compared(operator: type[ex.BinaryExpression], element: _Cell, code: int) -> ex.Expression:
+    return operator(left=_reference(element), right=_literal(element, code))
 
 
-def _literal(element: sct.DiscreteVariable, code: int) -> ex.Expression:
-    if isinstance(element.type, ex.EnumerationType):
-        return ex.EnumerationLiteralReference(literal=element.type.enumeration.literals[code])
+def _reference(element: _Cell) -> ex.Expression:
+    if isinstance(element, sct.Input):
+        return sct.InputReference(input=element)
+    return sct.VariableReference(variable=element)
+
+
+def _literal(element: _Cell, code: int) -> ex.Expression:
     number = code + smallest(element)
+    if isinstance(element.type, ex.EnumerationType):
+        return ex.EnumerationLiteralReference(literal=element.type.enumeration.literals[number])
     literal = ex.IntegerLiteral(value=abs(number))
     return literal if number >= 0 else ex.UnaryMinus(operand=literal)
 

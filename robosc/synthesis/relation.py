@@ -223,6 +223,25 @@ class EventRelation:
         levels = [level for domain in domains for level in (*domain.levels, *domain.next_levels)]
         return result.exists(encoding.diagrams.cube(levels))
 
+    def forbidding(self, before: Mapping[Element, int], after: Mapping[Element, int]) -> tuple[sct.Requirement, ...]:
+        """Return the requirements that keep the event from leading from one state to another, with any data.
+
+        If each permits some data that lead there, but none permits all at once, these are all requirements.
+        """
+        if not self.has_data:
+            here = self._encoding.state(before)
+            return tuple(own for own, permits in self.permissions.items() if not (here & permits).satisfiable())
+        alone = (
+            own for own in self.requirements if not self.between(before, after, self.condition_of(own)).satisfiable()
+        )
+        return tuple(alone) or (
+            () if self.between(before, after, self.permitted).satisfiable() else tuple(self.requirements)
+        )
+
+    def forbidden_by(self, requirement: sct.Requirement) -> Diagram:
+        """Return the states in which the plants enable the event and a requirement forbids it, or some of its data."""
+        return self.allowed_by(~self.condition_of(requirement))
+
     def may_lead_to(self, codes: Mapping[Element, int]) -> bool:
         """Return whether the event can lead to a state with these codes. Checks only the plants' locations.
 

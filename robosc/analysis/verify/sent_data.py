@@ -88,8 +88,8 @@ class _Examined:
 
     def _chosen(self, system: GuardedSystem) -> Diagram:
         plant = plant_of(self.choice)
-        wanted = self.choice.name.rstrip("_").removeprefix("c_")
-        return system.encoding.location(next(place for place in plant.locations if place.name == wanted))
+        location = self.choice.name.rstrip("_").removeprefix("c_")
+        return system.encoding.location(next(place for place in plant.locations if place.name == location))
 
 
 def _constants(text: Machine, plants: Machine) -> Iterator[_Examined]:
