@@ -22,8 +22,8 @@ robot Guard {
     incoming message level with identifier: "/level", type: integer(-1..5)
     behaviour {
       initial marked state idle { on request to level if value > 2 goto busy }
-      state busy { on request to level if value = 0 goto idle on request to level if value = 5 goto broken }
-      state broken { }
+      state busy { on request to level if value = 0 goto idle on request to level if value = 5 goto fast }
+      state fast { on request to level if value = 0 goto idle }
     }
   }
   component Person {
@@ -39,6 +39,7 @@ robot Guard {
   provide Base.velocity with { linear: { x: 1.0 } }
   provide Base.level with 3 if Base.idle
   provide Base.level with 0
+  requirement never Base.fast and Person.near
 }
 """
 #: An action whose goal requirements judge by its data, a service, a set of commands and a requirement automaton.

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from robosc.analysis.verify import (
+    LoopEffort,
     Outcome,
     Verdict,
     validate_c,
@@ -20,7 +21,7 @@ from robosc.analysis.verify import (
 from robosc.analysis.verify.sent_data import data_can_comply
 from robosc.base.diagnostics import Severity
 from robosc.language.configuration import Configuration
-from robosc.m2m import robosc_to_sct
+from robosc.m2m import robosc_to_sct, sct_to_engine
 from robosc.m2t import cif, supervisor
 from robosc.model import expression as ex
 from robosc.model import sct
@@ -101,7 +102,9 @@ def test_a_lost_conjunct_on_an_input_breaks_the_requirement(tmp_path: Path) -> N
 def test_synthesis_adds_a_condition_on_an_input(tmp_path: Path) -> None:
     models = models_of(GUARD, tmp_path)
     guard_of(models, LEVEL).synthesis = None
-    assert "non-blocking" in refuted(verify_system(models.sct))
+    assert refuted(verify_system(models.sct)) == {
+        "requirement never Base.fast and Person.near (line 27)": "it is violated where `Base.fast and Person.near`"
+    }
 
 
 def test_a_guard_that_forbids_some_data_is_needless(tmp_path: Path) -> None:
@@ -156,6 +159,18 @@ def test_the_controller_without_a_condition_on_data(monkeypatch: pytest.MonkeyPa
 
 
 # The generated texts
+
+
+@pytest.mark.build
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ROBOTS)
+def test_the_incremental_loop(name: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(sct_to_engine, "POLLED", 0)
+    models = models_of(ROBOTS[name], tmp_path)
+    files = generated_c(models)
+    assert not any("evaluates all guards" in text for text in files.values())
+    assert validate_c(models.sct, files).outcome is Outcome.PROVED
+    assert validate_loop(models.sct, files, LoopEffort(10_000, 2_000)).outcome in (Outcome.PROVED, Outcome.SAMPLED)
 
 
 @pytest.mark.build
