@@ -93,14 +93,10 @@ def _blocked_from_the_start(system: SynthesizedSystem) -> BlockReason:
         return _described(system, unmarked, [], start)
     steps = system.trace(path)
     for index, ((relation, _), codes, after) in enumerate(zip(path.moves, path.states, path.states[1:], strict=False)):
-        if not system.is_in(codes, relation.requirement):
+        at_fault = relation.forbidding(codes, after)
+        if at_fault:
             reason = _described(system, unmarked, steps[: index + 1], codes)
-            at_fault = [
-                requirement
-                for requirement, permission in relation.permissions.items()
-                if not system.is_in(codes, permission)
-            ]
-            return replace(reason, event=relation.event, requirements=tuple(at_fault), goal=goal)
+            return replace(reason, event=relation.event, requirements=at_fault, goal=goal)
         violated = system.violated(after)
         if violated and goal not in violated:
             reason = _described(system, (), steps[: index + 1], after)
@@ -156,9 +152,10 @@ def blocking_counterexample(system: SynthesizedSystem, event: sct.Event, way: Pa
     encoding, relation = system.encoding, system.relations[event]
     step = relation.step
     assert step is not None  # else the event would change nothing and could not lead to blocking
-    targets = step.image(system.last(way))
-    removed = targets & ~system.solution.rounds[-1]  # The data of a command choose among several targets.
-    after = pick(removed if removed.satisfiable() else targets, encoding.layout.state)
+    following = step.image(system.last(way))
+    # Other data of a command may lead to controlled states.
+    removed = following & ~system.solution.controlled
+    after = pick(removed if removed.satisfiable() else following, encoding.layout.state)
     onwards = unavoidable(system, after)
     end = onwards.states[-1]
     unmarked = [plant for plant in system.model.plants if not plant.locations[end[plant]].marked]
@@ -208,26 +205,25 @@ def forbidden_from(system: SynthesizedSystem, codes: Codes) -> list[sct.Requirem
     return [
         requirement
         for relation in system.relations.values()
-        for requirement, permission in relation.permissions.items()
-        if (onwards & relation.enabled & ~permission).satisfiable()
+        for requirement in relation.requirements
+        if (onwards & relation.forbidden_by(requirement)).satisfiable()
     ]
 
 
 def requirements_at_fault(relation: EventRelation, states: Diagram) -> tuple[sct.Requirement, ...]:
-    """Return the requirements at fault if an event is allowed in none of these states.
+    """Return the requirements at fault if an event is allowed in none of these states, with any data.
 
     These are all requirements that each disable the event in all states. If there is none, it is a minimal set of
     requirements that together disable it.
     """
-    alone = [
-        requirement
-        for requirement, permitting in relation.permissions.items()
-        if not (states & permitting).satisfiable()
-    ]
+    permissions = {requirement: relation.condition_of(requirement) for requirement in relation.requirements}
+    if relation.has_data:
+        states &= relation.happens
+    alone = [requirement for requirement, permitting in permissions.items() if not (states & permitting).satisfiable()]
     if alone:
         return tuple(alone)
-    together = dict(relation.permissions)
-    for requirement in relation.permissions:
+    together = dict(permissions)
+    for requirement in permissions:
         rest = states
         for other, permission in together.items():
             rest = rest if other is requirement else rest & permission

@@ -295,19 +295,19 @@ class Observer:
             return observation
         for number, (relation, _) in enumerate(way.moves):
             permission = self._permissions.get(relation.event)
-            if permission is None or system.is_in(way.states[number], permission.allowed):
+            before, after = way.states[number], way.states[number + 1]
+            if permission is None or (
+                system.is_in(after, system.controlled) and not relation.forbidding(before, after)
+                if relation.has_data
+                else system.is_in(before, permission.allowed)
+            ):
                 continue
-            here = permission.held_back & system.encoding.state(way.states[number])
-            if here.satisfiable():
+            here = permission.held_back & system.encoding.state(before)
+            if here.satisfiable() and not relation.forbidding(before, after):
                 return replace(observation, counterexample=self._counterexample(permission, here))
-            permissions = relation.permissions.items()
             return replace(
                 observation,
-                requirements=tuple(
-                    requirement
-                    for requirement, allowing in permissions
-                    if not system.is_in(way.states[number], allowing)
-                ),
+                requirements=relation.forbidding(before, after),
                 trace=system.trace(Path(way.states[: number + 2], way.moves[: number + 1])),
                 needed=relation.event,
             )
@@ -326,10 +326,15 @@ class Observer:
                 continue
             after = permission.where if step is None else step.image(permission.where)
             if not (after & self._system.started_where(event)).satisfiable():
-                at_fault = requirements_at_fault(permission.relation, after)
-                yield SelfCancelling(
-                    event, tuple(requirement for requirement in at_fault if requirement.automaton is None)
-                )
+                yield SelfCancelling(event, self._canceling(permission.relation, after))
+
+    def _canceling(self, relation: EventRelation, running: Diagram) -> tuple[sct.Requirement, ...]:
+        """Return the requirements on the start of an action that do not hold in these states, where it runs."""
+        judging = tuple(requirement for requirement in relation.requirements if requirement.automaton is None)
+        if relation.has_data:
+            alone = (own for own in judging if not (running & self._system.goal_satisfies(relation, own)).satisfiable())
+            return tuple(alone) or judging
+        return tuple(requirement for requirement in requirements_at_fault(relation, running) if requirement in judging)
 
     def _forbidden_cancels(self) -> Iterator[ForbiddenCancel]:
         for event, permission in self._permissions.items():
@@ -445,14 +450,17 @@ class Observer:
             return Hindrance(edge, None)
         relation = self._system.relations[edge.event]
         own = relation.states_taking([edge])
-        taken = self._system.encoding.holds(edge.guard) if relation.has_data else own
-        enabled = here & own & relation.allowed_by(taken)
         if not (here & own).satisfiable():
             return Hindrance(edge, Forbidden.BY_PLANTS, plants=(edge.target.eContainer(),))
+        if relation.has_data:
+            own = self._system.encoding.source(edge) & self._system.encoding.holds(edge.guard)
+        enabled = here & (relation.happens if relation.has_data else relation.enabled) & own
         if not enabled.satisfiable():
             return Hindrance(edge, Forbidden.BY_PLANTS, plants=never_ready(relation, here))
-        if not (enabled & relation.allowed_by(taken & relation.permitted)).satisfiable():
+        if not (enabled & relation.permitted).satisfiable():
             return Hindrance(edge, Forbidden.BY_REQUIREMENTS, requirements=requirements_at_fault(relation, enabled))
+        if relation.has_data:
+            own = (enabled & relation.permitted).exists(relation.inputs)
         return Hindrance(
             edge, Forbidden.BY_SYNTHESIS, counterexample=self._counterexample(self._permissions[edge.event], here & own)
         )

@@ -10,8 +10,9 @@ from robosc.synthesis.decoding import Value, text, value
 from robosc.synthesis.encoding import pick
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
+    from robosc.model import sct
     from robosc.synthesis.bdd import Diagram
     from robosc.synthesis.encoding import Element, Encoding
     from robosc.synthesis.relation import EventRelation, SymbolicStep
@@ -125,21 +126,32 @@ def deciding(moves: Sequence[Move], elements: Iterable[Element]) -> list[Move]:
     return [moves[number] for number in sorted(influencing)]
 
 
-def trace(encoding: Encoding, path: Path) -> list[TraceStep]:
-    """Return the events of a path with the input values that take it."""
+def trace(encoding: Encoding, path: Path, permitted: Callable[[sct.Event], Diagram] | None = None) -> list[TraceStep]:
+    """Return the events of a path with the input values that take it.
+
+    `permitted` returns the states and inputs in which a command is permitted. Its inputs are among these, unless the
+    path is not permitted.
+    """
     return [
-        TraceStep(event_name(relation.event), _inputs(encoding, relation, before, after))
+        TraceStep(event_name(relation.event), _inputs(encoding, relation, before, after, permitted))
         for (relation, _), before, after in zip(path.moves, path.states[:-1], path.states[1:], strict=True)
     ]
 
 
 def _inputs(
-    encoding: Encoding, relation: EventRelation, before: Mapping[Element, int], after: Mapping[Element, int]
+    encoding: Encoding,
+    relation: EventRelation,
+    before: Mapping[Element, int],
+    after: Mapping[Element, int],
+    permitted: Callable[[sct.Event], Diagram] | None,
 ) -> dict[str, Value]:
     """Return input values that lead from one state to the next, without inputs that do not matter."""
     if not relation.event.inputs:
         return {}
     fitting = relation.between(before, after)
+    if permitted is not None and relation.has_data:
+        restricted = relation.between(before, after, permitted(relation.event))
+        fitting = restricted if restricted.satisfiable() else fitting
     chosen = {}
     for parameter in relation.event.inputs:
         domain = encoding.layout.domains[parameter]

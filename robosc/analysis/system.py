@@ -111,7 +111,11 @@ class SupervisedSystem:
 
     def trace(self, path: Path) -> tuple[TraceStep, ...]:
         """Return the events of a path, with the values of inputs that matter."""
-        return tuple(trace(self.encoding, path))
+        return tuple(trace(self.encoding, path, self.permitted))
+
+    def permitted(self, event: sct.Event) -> Diagram:  # noqa: ARG002 - subclasses restrict events
+        """Return the states, and inputs of a command, in which the supervisor or the requirements permit an event."""
+        return self.diagrams.true
 
     def last(self, path: Path) -> Diagram:
         """Return the state in which a path ends."""
@@ -233,6 +237,10 @@ class SynthesizedSystem(SupervisedSystem):
         goal, reached = self.goals[required], self.solution.rounds[0]
         return reached & goal.premise & ~coreachable(self.diagrams, steps(self.moves), goal.states & reached, reached)
 
+    def permitted(self, event: sct.Event) -> Diagram:
+        """Return the states, and inputs of a command, in which the requirements permit an event."""
+        return self.required[event]
+
     def allowed(self, event: sct.Event) -> Diagram:
         """Return the controlled states in which the event can happen."""
         enabled = self.controlled & self.relations[event].allowed_by(self.required[event])
@@ -279,16 +287,20 @@ class SynthesizedSystem(SupervisedSystem):
         automata = {requirement for requirement in relation.requirements if requirement.automaton is not None}
         return self._of_running_goal(relation, self._permitted(relation, left_out | automata))
 
+    def goal_satisfies(self, relation: EventRelation, requirement: sct.Requirement) -> Diagram:
+        """Return the states in which the data of a running goal satisfy a requirement on its start."""
+        return self._of_running_goal(relation, relation.condition_of(requirement))
+
     def _of_running_goal(self, relation: EventRelation, condition: Diagram) -> Diagram:
         """Return a condition on the data of a start as a condition on the variables that hold these data."""
         equal, diagrams = self.encoding.equal, self.diagrams
-        held = [
+        copies = [
             equal(update.variable, update.value.input)
             for edge in relation.own_edges
             for update in edge.updates
             if isinstance(update.value, sct.InputReference)
         ]
-        return and_exists(condition, diagrams.all_of(held), relation.inputs) if held else condition
+        return and_exists(condition, diagrams.all_of(copies), relation.inputs) if copies else condition
 
     def _permitted(self, relation: EventRelation, left_out: AbstractSet[sct.StatedRequirement]) -> Diagram:
         """Return the states, and inputs of a command, in which the requirements that are not left out hold."""
@@ -341,6 +353,13 @@ class GuardedSystem(SupervisedSystem):
             return self.diagrams.true
         return self.encoding.holds(guard.requirement) & self.encoding.holds(guard.synthesis)
 
+    permitted = guard
+
+    def happens(self, event: sct.Event) -> Diagram:
+        """Return the states, and inputs of a command, in which an event can happen, reachable or not."""
+        relation = self.relations[event]
+        return (relation.happens if relation.has_data else relation.enabled) & self.guard(event)
+
     @cached_property
     def completion(self) -> Completion:
         """Maximum number of consecutive internal events, and the states from which they never end."""
@@ -359,6 +378,10 @@ class ExplainedSystem(SynthesizedSystem):
         self._guarded = GuardedSystem(model, encoding, relations)
         self.supervised_moves = self._guarded.moves
         self.initial, self.controlled = self._guarded.initial, self._guarded.controlled
+
+    def permitted(self, event: sct.Event) -> Diagram:
+        """Return the states, and inputs of a command, in which the supervisor permits an event."""
+        return self._guarded.guard(event)
 
     def allowed(self, event: sct.Event) -> Diagram:
         """Return the controlled states in which the event can happen."""

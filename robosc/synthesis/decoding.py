@@ -16,10 +16,11 @@ if TYPE_CHECKING:
     from robosc.synthesis.bdd import Diagram
     from robosc.synthesis.encoding import Domain, Element
 
+    #: Element with a value that is no location.
+    _Cell: TypeAlias = sct.DiscreteVariable | sct.Input
+
 #: Codes of a domain as ranges, both ends included, ascending, with gaps between them.
 Ranges: TypeAlias = "list[tuple[int, int]]"
-#: Element with a value of a type.
-_Valued: TypeAlias = sct.DiscreteVariable | sct.Input
 #: Value outside of the model: a location or a literal by its name.
 Value: TypeAlias = bool | int | str
 
@@ -96,7 +97,7 @@ def _size(ranges: Ranges) -> int:
     return sum(last - first + 1 for first, last in ranges)
 
 
-def _is_integer(element: Element) -> TypeGuard[_Valued]:
+def _is_integer(element: Element) -> TypeGuard[_Cell]:
     return not isinstance(element, sct.Plant) and isinstance(element.type, ex.IntegerType)
 
 
@@ -104,8 +105,7 @@ def _is(element: Element, code: int) -> ex.Expression:
     if isinstance(element, sct.Plant):
         return sct.LocationReference(location=element.locations[code])
     if isinstance(element.type, ex.BooleanType):
-        reference = _reference(element)
-        return reference if code else ex.Negation(operand=reference)
+        return _reference(element) if code else ex.Negation(operand=_reference(element))
     return _compared(ex.Equation, element, code)
 
 
@@ -115,7 +115,7 @@ def _is_not(element: Element, code: int) -> ex.Expression:
     return ex.Negation(operand=_is(element, code))
 
 
-def _in_range(element: _Valued, size: int, first: int, last: int) -> ex.Expression:
+def _in_range(element: _Cell, size: int, first: int, last: int) -> ex.Expression:
     if first == last:
         return _compared(ex.Equation, element, first)
     bounds = []
@@ -126,20 +126,20 @@ def _in_range(element: _Valued, size: int, first: int, last: int) -> ex.Expressi
     return _all(bounds)
 
 
-def _compared(operator: type[ex.BinaryExpression], element: _Valued, code: int) -> ex.Expression:
+def _compared(operator: type[ex.BinaryExpression], element: _Cell, code: int) -> ex.Expression:
     return operator(left=_reference(element), right=_literal(element, code))
 
 
-def _reference(element: _Valued) -> ex.Expression:
+def _reference(element: _Cell) -> ex.Expression:
     if isinstance(element, sct.Input):
         return sct.InputReference(input=element)
     return sct.VariableReference(variable=element)
 
 
-def _literal(element: _Valued, code: int) -> ex.Expression:
-    if isinstance(element.type, ex.EnumerationType):
-        return ex.EnumerationLiteralReference(literal=element.type.enumeration.literals[code + smallest(element)])
+def _literal(element: _Cell, code: int) -> ex.Expression:
     number = code + smallest(element)
+    if isinstance(element.type, ex.EnumerationType):
+        return ex.EnumerationLiteralReference(literal=element.type.enumeration.literals[number])
     literal = ex.IntegerLiteral(value=abs(number))
     return literal if number >= 0 else ex.UnaryMinus(operand=literal)
 

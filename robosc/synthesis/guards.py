@@ -39,10 +39,10 @@ class Permission:
     @cached_property
     def held_back(self) -> Diagram:
         """Controlled states in which only synthesis forbids the event, or some of its data."""
-        relation = self.relation
-        if not relation.has_data:
-            return self.controlled & (relation.enabled & relation.requirement & ~self.where)
-        return self.controlled & relation.allowed_by(relation.permitted & ~relation.leading_to(self.controlled))
+        relation, step = self.relation, self.relation.step
+        if relation.has_data and step is not None:
+            return self.controlled & step.preimage(~self.controlled)
+        return self.controlled & (relation.enabled & relation.requirement & ~self.where)
 
     @cached_property
     def allowed(self) -> Diagram:

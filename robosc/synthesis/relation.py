@@ -175,12 +175,6 @@ class EventRelation:
     def _all_of(self, diagrams: Iterable[Diagram]) -> Diagram:
         return self._encoding.diagrams.all_of(diagrams)
 
-    def forbidden_by(self, requirement: sct.Requirement) -> Diagram:
-        """Return the states in which the plants enable the event and a requirement forbids it, with some inputs."""
-        if not self.has_data:
-            return self.enabled & ~self.permissions[requirement]
-        return and_exists(self.happens, ~self.condition_of(requirement), self.inputs)
-
     def condition_of(self, requirement: sct.Requirement) -> Diagram:
         """Return the states in which a requirement allows the event, and the inputs if it is a command with data."""
         return self._encoding.permits(requirement) if self.has_data else self.permissions[requirement]
@@ -212,15 +206,41 @@ class EventRelation:
             ]
         )
 
-    def between(self, before: Mapping[Element, int], after: Mapping[Element, int]) -> Diagram:
-        """Return the input values with which the event leads from one state to another, both given by codes."""
+    def between(
+        self, before: Mapping[Element, int], after: Mapping[Element, int], condition: Diagram | None = None
+    ) -> Diagram:
+        """Return the input values with which the event leads from one state to another, both given by codes.
+
+        `condition` is a further condition on the state before and the inputs.
+        """
         encoding = self._encoding
         result = self.with_inputs() & encoding.state(before)
+        if condition is not None:
+            result &= condition
         for element in self.changed:
             result &= encoding.becomes(element, arithmetic.constant(encoding.diagrams, after[element]))
         domains = encoding.layout.state
         levels = [level for domain in domains for level in (*domain.levels, *domain.next_levels)]
         return result.exists(encoding.diagrams.cube(levels))
+
+    def forbidding(self, before: Mapping[Element, int], after: Mapping[Element, int]) -> tuple[sct.Requirement, ...]:
+        """Return the requirements that keep the event from leading from one state to another, with any data.
+
+        If each permits some data that lead there, but none permits all at once, these are all requirements.
+        """
+        if not self.has_data:
+            here = self._encoding.state(before)
+            return tuple(own for own, permits in self.permissions.items() if not (here & permits).satisfiable())
+        alone = (
+            own for own in self.requirements if not self.between(before, after, self.condition_of(own)).satisfiable()
+        )
+        return tuple(alone) or (
+            () if self.between(before, after, self.permitted).satisfiable() else tuple(self.requirements)
+        )
+
+    def forbidden_by(self, requirement: sct.Requirement) -> Diagram:
+        """Return the states in which the plants enable the event and a requirement forbids it, or some of its data."""
+        return self.allowed_by(~self.condition_of(requirement))
 
     def may_lead_to(self, codes: Mapping[Element, int]) -> bool:
         """Return whether the event can lead to a state with these codes. Checks only the plants' locations.

@@ -23,6 +23,7 @@ from robosc.analysis.verify.controller_reading import validate_controller
 from robosc.analysis.verify.loop_exploration import LoopEffort
 from robosc.analysis.verify.model_reading import validate_model
 from robosc.analysis.verify.properties import properties
+from robosc.analysis.verify.sent_data import data_can_comply, has_commands_with_data
 from robosc.analysis.verify.verdict import Outcome, Verdict, measure
 from robosc.base.diagnostics import has_errors
 from robosc.m2t import cif, supervisor
@@ -60,7 +61,8 @@ def verify(
 
     `begin` is called with the name of each step before the step starts.
 
-    The verdicts are about the model's properties (`verify_system`), its plants and its controller compared with the
+    The verdicts are about the model's properties (`verify_system`), the constant data of its commands
+    (`data_can_comply`, if the supervisor decides with data), its plants and its controller compared with the
     robot's text (skipped if `models.robosc` is None), and the C and CIF that are generated with this configuration
     (`validate`). Raises ValueError if the model has no supervisor, and MemoryError if decision diagrams take more than
     4 GB.
@@ -71,6 +73,8 @@ def verify(
     controllers = [] if is_from_cif(models.sct) else [measure(validate_controller, models)]
     begin("properties")
     system = verify_system(models.sct)
+    if has_commands_with_data(models.sct):
+        system.append(measure(data_can_comply, models))
     begin("generated C and CIF")
     return [*system, reading, *controllers, *validate(models, configuration)]
 

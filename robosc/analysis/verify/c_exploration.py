@@ -97,7 +97,8 @@ class _Trial:
         inputs = {parameter: position for position, parameter in enumerate(self._inputs)}
         for event, transition in of_system(system).items():
             changed = [cell for cell in self._cells if cell in transition.after]
-            yield " ".join(map(str, (nodes.number(transition.enabled), len(event.inputs))))
+            conditions = nodes.number(system.allowed[event]), nodes.number(transition.enabled)
+            yield " ".join(map(str, (*conditions, len(event.inputs))))
             yield from (str(inputs[parameter]) for parameter in event.inputs)
             yield str(len(changed))
             for element in changed:
@@ -119,8 +120,8 @@ class _Trial:
         return self._difference(system, numbers)
 
     def _difference(self, system: GuardedSystem, numbers: Sequence[int]) -> Verdict:
-        event, (possible, enabled, performed) = self._events[numbers[0]], numbers[1:4]
-        codes = iter(numbers[4:])
+        event, (possible, enabled, allowed, performed) = self._events[numbers[0]], numbers[1:5]
+        codes = iter(numbers[5:])
         before, inputs, after, expected = (
             dict(zip(elements, codes, strict=False))
             for elements in (self._cells, self._inputs, self._cells, self._cells)
@@ -130,6 +131,8 @@ class _Trial:
         step = event_in_words(event, inputs if possible and enabled else {})
         if enabled != possible:
             what = on_one_side(step, TEXT, translated=bool(enabled))
+        elif possible and not allowed:
+            what = on_one_side(step, TEXT, translated=True)
         elif performed != possible:
             what = f"{step} {'is enabled but does not' if possible else 'is not enabled but does'} happen in {TEXT}"
         else:

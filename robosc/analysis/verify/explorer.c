@@ -48,7 +48,7 @@ typedef struct effect {
 
 typedef struct event {
     ENGINE(event) number;
-    unsigned enabled, inputs, *input, effects;
+    unsigned enabled, allowed, inputs, *input, effects;
     effect *effect;
 } event;
 
@@ -121,10 +121,10 @@ static void tell(const uint64_t *code, unsigned count)
     }
 }
 
-static void differ(const event *one, const uint64_t *state, bool possible, bool enabled, bool performed,
+static void differ(const event *one, const uint64_t *state, bool possible, bool enabled, bool allowed, bool performed,
                    const uint64_t *after)
 {
-    printf("differs %u %d %d %d", (unsigned)(one - events), possible, enabled, performed);
+    printf("differs %u %d %d %d %d", (unsigned)(one - events), possible, enabled, allowed, performed);
     tell(state, CELLS);
     tell(chosen, INPUTS);
     tell(after, CELLS);
@@ -142,19 +142,21 @@ static bool asked(const event *one, const uint64_t *state)
         uint64_t after[CELLS + 1];
         get(after);
         memcpy(expected, state, CELLS * sizeof *expected);
-        differ(one, state, possible, enabled, performed, after);
+        differ(one, state, possible, enabled, possible, performed, after);
     }
     return possible;
 }
 
-/* Computes the state after a possible event with the chosen inputs. Restores the robot. */
+/* Computes the state after a possible event with the chosen inputs, which is the same state if they are not allowed.
+ * Restores the robot. */
 static void perform(const event *one, const uint64_t *state, uint64_t *after)
 {
     for (unsigned position = 0U; position < one->inputs; ++position) {
         assume(&domains[CELLS + one->input[position]], chosen[one->input[position]]);
     }
     memcpy(expected, state, CELLS * sizeof *expected);
-    for (unsigned position = 0U; position < one->effects; ++position) {
+    const bool allowed = holds(one->allowed);
+    for (unsigned position = 0U; allowed && position < one->effects; ++position) {
         const effect *change = &one->effect[position];
         uint64_t code = 0U;
         for (unsigned bit = 0U; bit < domains[change->cell].bits; ++bit) {
@@ -165,8 +167,8 @@ static void perform(const event *one, const uint64_t *state, uint64_t *after)
     put_inputs();
     const bool performed = ENGINE(perform)(&robot, one->number NOW);
     get(after);
-    if (!performed || memcmp(after, expected, CELLS * sizeof *after) != 0) {
-        differ(one, state, true, true, performed, after);
+    if (performed != allowed || memcmp(after, expected, CELLS * sizeof *after) != 0) {
+        differ(one, state, true, true, allowed, performed, after);
     }
     memcpy(&robot, &placed, sizeof robot);
 }
@@ -359,7 +361,8 @@ static unsigned *numbers(unsigned length)
 }
 
 /* Reads the levels and nodes, the last code and levels of each domain, the initial state, and the events. Each event
- * has its condition, its inputs, and the bits of its effects. */
+ * has the condition that it is enabled, the condition that it is allowed with its inputs, its inputs, and the bits of
+ * its effects. */
 static void load(void)
 {
     truth = enough(calloc((size_t)number() + 1U, sizeof *truth));
@@ -390,6 +393,7 @@ static void load(void)
     }
     for (event *one = events; one < events + EVENTS; ++one) {
         one->enabled = (unsigned)number();
+        one->allowed = (unsigned)number();
         one->inputs = (unsigned)number();
         one->input = numbers(one->inputs);
         one->effects = (unsigned)number();

@@ -6,6 +6,7 @@
  *     n EVENTS REACTIONS REACT RESOLUTION NOW   starts again with these settings
  *     p EVENT   b   e   t   s   x   r   performs; begins, ends a batch; ticks; settles; expires, restarts timers
  *     i INPUT CODE   w EVENT   d DURATION MILLISECONDS   c NOW   sets values that hold from now on
+ *     v COMMAND INPUT CODE   sets an input that the hook `before` sets right before the command, from now on
  *     k   saves the loop and prints its number, and the number of the first equal one
  *     g NUMBER   restores that loop
  *
@@ -42,7 +43,8 @@ typedef struct moment {
 
 static const char *const names[EVENTS + 1] = { EVENT_NAMES "" };
 static ENGINE(event) events[EVENTS + 1];
-static uint64_t chosen[INPUTS + 1];
+static uint64_t chosen[INPUTS + 1], sent[INPUTS + 1];
+static unsigned command[INPUTS + 1]; /* One more than the command whose hook sets the input; 0 for none. */
 static bool withheld[ENGINE_EVENTS + 1];
 static ENGINE(supervisor) robot;
 static moment *moments;
@@ -70,7 +72,20 @@ static uint64_t number(void)
 static bool before(void *context, ENGINE(event) event)
 {
     (void)context;
-    return !withheld[event];
+    if (withheld[event]) {
+        return false;
+    }
+    bool has_data = false;
+    for (unsigned input = 0U; input < INPUTS; ++input) {
+        if (command[input] == (unsigned)event + 1U) {
+            chosen[input] = sent[input];
+            has_data = true;
+        }
+    }
+    if (has_data) {
+        put_inputs();
+    }
+    return true;
 }
 
 static void after(void *context, ENGINE(event) event)
@@ -243,6 +258,12 @@ static void follow(char operation)
         input = number();
         chosen[input] = number();
         put_inputs();
+        break;
+    case 'v':
+        event = events[number()];
+        input = number();
+        command[input] = (unsigned)event + 1U;
+        sent[input] = number();
         break;
     case 'w':
         event = events[number()];

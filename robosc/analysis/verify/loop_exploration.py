@@ -17,7 +17,7 @@ from robosc.engine import Settings, cache_results
 from robosc.model.semantics.roles import Roles
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
     from subprocess import Popen
 
     from robosc.analysis.paths import TraceStep
@@ -35,6 +35,8 @@ _PARTS, _EARLY = 4, 3
 #: Maximum number of input values of an event that are all tried. Otherwise, these are tried: all least, all middle, all
 #: greatest.
 _VALUES = 4
+#: Maximum number of combinations of the data of all commands that are all tried.
+_COMBINATIONS = 16
 #: Maximum number of queries whether an event is possible. An operation makes one query for each event.
 _QUESTIONS = 1_000_000
 #: Maximum distance of a value near an end of an input's range.
@@ -166,7 +168,7 @@ def _key(saved: SavedLoops) -> tuple[Any, ...]:
 def _operations(lockstep: Lockstep) -> list[Operation]:
     """Return the operations to try in each state.
 
-    They are batches, ticks, settling and timers, some with a withheld event.
+    They are batches, ticks, settling and timers, some with a withheld event. Commands with inputs get different data.
     """
     roles = Roles(lockstep.model)
     number = {event: place for place, event in enumerate(lockstep.events)}
@@ -178,16 +180,46 @@ def _operations(lockstep: Lockstep) -> list[Operation]:
     own = [number[event] for event in (*roles.cancels, *roles.triggers, *roles.silent)]
     come = [_batch([(place, _values(lockstep, place)[0])]) for place in alone]
     timed: list[Operation] = [_up, _early, _backwards, _operation("r")] if lockstep.loop.timers.exist else []
-    return [
-        _operation("be"),
-        *(_batch(batch) for batch in batches),
-        _impossible,
-        _operation("t"),
-        _operation("s"),
+    whole = [_operation("be"), *map(_batch, batches), _impossible, _operation("t"), _operation("s")]
+    partial = [
         *(_without(event, _operation(name)) for event in own for name in ("t", "s")),
         *(_without(number[event], batch) for event in roles.silent for batch in come),
         *timed,
     ]
+    sent = _sent(lockstep)
+    if not sent:
+        return [*whole, *partial]
+    return [
+        *(_with_data(data, operation) for operation in whole for data in sent),
+        *(_with_data(sent[place % len(sent)], operation) for place, operation in enumerate(partial)),
+    ]
+
+
+def _sent(lockstep: Lockstep) -> list[dict[int, tuple[int, ...]]]:
+    """Return data of all commands with inputs, to try one after the other: all combinations if these are few.
+
+    Otherwise, all commands have their first data, their second, and so on, and each has its own where the others have
+    their first.
+    """
+    values = {number: _values(lockstep, number) for number in lockstep.commands}
+    if not values:
+        return []
+    if prod(map(len, values.values())) <= _COMBINATIONS:
+        return [dict(zip(values, chosen, strict=True)) for chosen in product(*values.values())]
+    first = {number: codes[0] for number, codes in values.items()}
+    longest = max(map(len, values.values()))
+    together = [{number: codes[turn % len(codes)] for number, codes in values.items()} for turn in range(longest)]
+    return together + [{**first, number: chosen} for number, codes in values.items() for chosen in codes[1:]]
+
+
+def _with_data(data: Mapping[int, tuple[int, ...]], operation: Operation) -> Operation:
+    """Return the operation while commands have these data."""
+
+    def operate(both: Lockstep) -> bool:
+        both.set_data(data)
+        return operation(both)
+
+    return operate
 
 
 def _values(lockstep: Lockstep, event: int) -> list[tuple[int, ...]]:
@@ -299,7 +331,14 @@ class _Walk:
         self._incoming = [number[event] for event in Roles(lockstep.model).incoming]
 
     def step(self) -> None:
-        """Run one random operation."""
+        """Run one random operation, mostly after a change of the data of commands."""
+        if self._both.commands and self._random.random() < 0.7:
+            self._both.set_data(
+                {
+                    number: tuple(self._code(size - 1) for size in self._both.sizes(number))
+                    for number in self._both.commands
+                }
+            )
         timed = [self._wait] * (3 * self._both.loop.timers.exist)
         batches = [self.batch] * 4
         self._random.choice((*batches, self._tick, self._settle, self._withhold, *timed))()

@@ -94,6 +94,10 @@ class Lockstep:
         #: Text of the codes of each state so far.
         self._codes: dict[tuple[int, ...], str] = {}
         self._withheld: set[str] = set()
+        #: Numbers of the commands with inputs.
+        self.commands = [number for number, event in enumerate(self.events) if event.controllable and event.inputs]
+        #: Data of these commands, which both callers set right before a command.
+        self._data: dict[str, Mapping[str, Any]] = {}
         #: Events since the caller last cleared the list.
         self.seen: list[TraceStep] = []
         #: Event that is being performed, with its data.
@@ -102,17 +106,25 @@ class Lockstep:
     def begin(self, settings: Settings) -> None:
         """Start both loops again."""
         self._withheld.clear()
-        hooks = Hooks(lambda event: event not in self._withheld, self._after, lambda: self._happened.append("!"))
+        hooks = Hooks(self._before, self._after, lambda: self._happened.append("!"))
         self.loop = ControlLoop(self.model, settings, hooks)
         self.loop.timers.at(_START)
         self.loop.timers.restart()
         numbers = (settings.events_per_tick, settings.reactions_per_tick, int(settings.react_immediately))
         self._script.append(f"n {' '.join(map(str, numbers))} {settings.resolution_ms} {_START}")
+        self.set_data({number: tuple(0 for _ in self.sizes(number)) for number in self.commands})
+
+    def _before(self, event: str) -> bool:
+        if event in self._withheld:
+            return False
+        if event in self._data:
+            self.loop.engine.set_inputs(event, self._data[event])
+        return True
 
     def _after(self, event: str) -> None:
         self._happened.append(str(self._numbers[event]))
         performed, data = self._performed
-        self.seen.append(TraceStep(event, data if event == performed else {}))
+        self.seen.append(TraceStep(event, self._data.get(event, data if event == performed else {})))
 
     def operate(self, operation: str) -> None:
         """Run an operation without arguments."""
@@ -142,16 +154,28 @@ class Lockstep:
 
     def perform(self, number: int, codes: tuple[int, ...]) -> None:
         """Perform an event, with a code for each of its inputs."""
-        data = {}
+        data = self._values(number, codes)
         for parameter, code in zip(self.events[number].inputs, codes, strict=True):
-            place, domain = self._inputs[parameter]
-            data[parameter.name] = domain.external(domain.low + code)
-            self._script.append(f"i {place} {code}")
+            self._script.append(f"i {self._inputs[parameter][0]} {code}")
         self._script.append(f"p {number}")
         self._performed = self.names[number], data
         result = self.loop.perform(self.names[number], data)
         self._performed = "", {}
         self._say("p", result)
+
+    def _values(self, number: int, codes: tuple[int, ...]) -> dict[str, Any]:
+        """Return the values of an event's inputs by their names."""
+        return {
+            parameter.name: domain.external(domain.low + code)
+            for parameter, domain, code in zip(self.events[number].inputs, self._domains(number), codes, strict=True)
+        }
+
+    def set_data(self, data: Mapping[int, tuple[int, ...]]) -> None:
+        """Set the data of commands from now on, with a code for each of their inputs."""
+        for number, codes in data.items():
+            self._data[self.names[number]] = self._values(number, codes)
+            for parameter, code in zip(self.events[number].inputs, codes, strict=True):
+                self._script.append(f"v {number} {self._inputs[parameter][0]} {code}")
 
     def withhold(self, number: int) -> None:
         """Withhold an event, or stop withholding it."""

@@ -10,18 +10,20 @@ from functools import partial
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from robosc.analysis.paths import TraceStep
 from robosc.analysis.system import format_count
 from robosc.analysis.verify.loop import LoopModel, require_loop_states
 from robosc.analysis.verify.response import bounded_response, confluence, finite_response
 from robosc.analysis.verify.verdict import Outcome, Verdict, trace_step
-from robosc.analysis.wording import join_with_and, name, words
+from robosc.analysis.wording import in_words, join_with_and, name, words
 from robosc.model import expression as ex
 from robosc.model import sct
 from robosc.model.places import place
 from robosc.model.semantics.printing import RobotPrinter
 from robosc.model.semantics.roles import event_name, is_from_cif, plant_of
 from robosc.model.semantics.walks import copy_tree
-from robosc.synthesis.encoding import referenced_elements
+from robosc.synthesis.decoding import value
+from robosc.synthesis.encoding import pick, referenced_elements
 from robosc.synthesis.fixpoint import coreachable, supervise
 from robosc.synthesis.relation import required_moves, steps
 
@@ -173,23 +175,36 @@ def requirement_holds(system: GuardedSystem, requirement: sct.Requirement) -> Ve
     condition_text = RobotPrinter()(condition if is_needed else ex.Negation(operand=condition))
     happens = system.controlled & system.allowed[requirement.event]
     states = format_count(system.encoding.count(happens), "state")
+    forbidden = ~relation.condition_of(requirement)
+
+    def last(_: EventRelation, path: Path) -> TraceStep:
+        return _last_step(system, requirement.event, system.guard(requirement.event) & forbidden, path)
 
     def explanation(_: EventRelation, path: Path) -> str:
         where = system.where(path.states[-1], referenced_elements(requirement.condition))
-        return f"{words(requirement.event)} can happen" + (f" where `{where}`" if where else "")
+        step = in_words([last(relation, path)], system.model)
+        return f"{step} can happen" + (f" where `{where}`" if where else "")
 
     evidence = f"happens in {states}, requires `{condition_text}`"
-    broken = {relation: happens & ~relation.permissions[requirement]}
-    return _nowhere(
-        requirement_name(requirement), system, evidence, broken, explanation, last=lambda relation: relation.event
-    )
+    broken = {relation: system.controlled & relation.allowed_by(system.guard(requirement.event) & forbidden)}
+    return _nowhere(requirement_name(requirement), system, evidence, broken, explanation, last=last)
+
+
+def _last_step(system: GuardedSystem, event: sct.Event, condition: Diagram, path: Path) -> TraceStep:
+    """Return an event as the end of a trace after a path: a command with inputs for which the condition holds."""
+    relation = system.relations[event]
+    if not relation.has_data:
+        return trace_step(event)
+    domains = [system.encoding.layout.domains[carried] for carried in event.inputs]
+    codes = pick(relation.happens & condition & system.last(path), domains)
+    return TraceStep(event_name(event), {carried.name: value(carried, codes[carried]) for carried in event.inputs})
 
 
 def ranges(system: GuardedSystem) -> Verdict:
     """Check that no event in a reachable state can move a variable out of its range."""
     requirements = [requirement for requirement in system.model.requirements if requirement.ranges]
     leaving = {
-        requirement: system.controlled & system.allowed[requirement.event] & ~system.encoding.permits(requirement)
+        requirement: system.controlled & system.happens(requirement.event) & ~system.encoding.permits(requirement)
         for requirement in requirements
     }
 
@@ -199,7 +214,9 @@ def ranges(system: GuardedSystem) -> Verdict:
         return f"{words(requirement.event)} sets {variables} to values out of range" + (f" where `{at}`" if at else "")
 
     evidence = f"{system.size}, {format_count(len(requirements), 'edge')} that could leave their ranges"
-    return _nowhere("ranges", system, evidence, leaving, explanation, last=lambda requirement: requirement.event)
+    return _nowhere(
+        "ranges", system, evidence, leaving, explanation, last=lambda requirement, _: trace_step(requirement.event)
+    )
 
 
 def invariant_holds(system: GuardedSystem, invariant: sct.StateInvariant | sct.InvariantProperty) -> Verdict:
@@ -262,15 +279,28 @@ def _cancelable(system: GuardedSystem) -> dict[sct.Event, sct.Event]:
     return start_by_cancel
 
 
+def _goal_satisfies(system: GuardedSystem, start: EventRelation) -> Diagram:
+    """Return the states in which the data of a running goal satisfy the requirements on its start.
+
+    The start stores its inputs in variables of the action's plant.
+    """
+    satisfied = system.diagrams.true
+    for requirement in start.requirements:
+        if requirement.automaton is None:
+            satisfied &= start.condition_of(requirement)
+    for update in (update for edge in start.own_edges for update in edge.updates):
+        if isinstance(update.value, sct.InputReference):
+            satisfied &= system.encoding.equal(update.variable, update.value.input)
+    return satisfied.exists(start.inputs) if start.has_data else satisfied
+
+
 def cancel_when_due(system: GuardedSystem) -> Verdict:
     """Check that the cancel of a running action can happen if a requirement on its start no longer holds."""
     cancels = _cancelable(system)
     held_back = {
         cancel: system.controlled
         & system.relations[cancel].enabled_by[plant_of(cancel)]
-        & ~system.diagrams.all_of(
-            holds for requirement, holds in system.relations[start].permissions.items() if requirement.automaton is None
-        )
+        & ~_goal_satisfies(system, system.relations[start])
         & ~system.allowed[cancel]
         for cancel, start in cancels.items()
     }
@@ -288,18 +318,23 @@ def maximal_permissiveness(system: GuardedSystem) -> Verdict:
         system.encoding, required_moves(system.relations.values()), system.violating, system.goals.values()
     ).controlled
     controllable = [relation for relation in system.relations.values() if relation.event.controllable]
+    denied = {relation: ~system.guard(relation.event) for relation in controllable}
     needless = {
-        relation: system.controlled & _permitted(relation, required) & ~system.allowed[relation.event]
-        for relation in controllable
+        relation: system.controlled & _permitted(relation, required, condition)
+        for relation, condition in denied.items()
     }
 
-    def explanation(relation: EventRelation, _path: Path) -> str:
-        return f"{words(relation.event)} is forbidden here without a reason"
+    def last(relation: EventRelation, path: Path) -> TraceStep:
+        leading = relation.permitted & denied[relation]
+        if relation.has_data and relation.changed:
+            leading &= relation.leading_to(required)
+        return _last_step(system, relation.event, leading, path)
+
+    def explanation(relation: EventRelation, path: Path) -> str:
+        return f"{in_words([last(relation, path)], system.model)} is forbidden here without a reason"
 
     evidence = f"{system.size}, {format_count(len(controllable), 'controllable event')}"
-    return _nowhere(
-        "maximal permissiveness", system, evidence, needless, explanation, last=lambda relation: relation.event
-    )
+    return _nowhere("maximal permissiveness", system, evidence, needless, explanation, last=last)
 
 
 @require_loop_states("non-blocking in the control loop")
@@ -330,25 +365,32 @@ def _nowhere(  # noqa: PLR0913 - all parts of a verdict
     violations: Mapping[T, Diagram],
     explanation: Callable[[T, Path], str],
     *,
-    last: Callable[[T], sct.Event] | None = None,
+    last: Callable[[T, Path], TraceStep] | None = None,
 ) -> Verdict:
     """Return the verdict that there are no violations, or the first violation in the nearest state.
 
-    The trace ends in that state, or with the event `last` of the violation.
+    The trace ends in that state, or with the step `last` of the violation.
     """
     anywhere = system.diagrams.any_of(violations.values())
     if not anywhere.satisfiable():
         return Verdict(question, Outcome.PROVED, evidence)
     path = system.path_to(anywhere)
     violated = next(requirement for requirement, states in violations.items() if system.is_in(path.states[-1], states))
-    trace = (*system.trace(path), *([trace_step(last(violated))] if last else []))
+    trace = (*system.trace(path), *([last(violated, path)] if last else []))
     return Verdict(question, Outcome.REFUTED, evidence, explanation(violated, path), trace)
 
 
-def _permitted(relation: EventRelation, controlled: Diagram) -> Diagram:
-    """Return the states in which the maximally permissive supervisor allows the event."""
-    enabled = controlled & relation.enabled & relation.requirement
-    return enabled if relation.step is None else enabled & relation.step.preimage(controlled)
+def _permitted(relation: EventRelation, controlled: Diagram, condition: Diagram) -> Diagram:
+    """Return the states in which the maximally permissive supervisor allows the event under a condition.
+
+    The condition is on the state and on the inputs of a command: the supervisor decides on each combination of them.
+    """
+    if not relation.has_data:
+        enabled = controlled & relation.enabled & relation.requirement & condition
+        return enabled if relation.step is None else enabled & relation.step.preimage(controlled)
+    step = relation.step_where(relation.permitted & condition)
+    allowed = relation.allowed_by(relation.permitted & condition) if step is None else step.preimage(controlled)
+    return controlled & allowed
 
 
 def _stuck(plants: Sequence[sct.Plant], codes: Codes) -> str:

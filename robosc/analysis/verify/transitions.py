@@ -28,7 +28,8 @@ class AmbiguityError(ValueError):
 class Transition:
     """Effect of one event: the states that enable it, and the code of each element after it.
 
-    An element that `after` does not contain keeps its value.
+    `enabled` also depends on the inputs if the event is a command with inputs. An element that `after` does not contain
+    keeps its value.
     """
 
     enabled: Diagram
@@ -47,7 +48,7 @@ def of_system(system: GuardedSystem) -> dict[sct.Event, Transition]:
     transitions = {
         event: together(edges.get(event, {}).values(), system.encoding, saturates=True) for event in system.relations
     }
-    return {event: Transition(system.allowed[event], transition.after) for event, transition in transitions.items()}
+    return {event: Transition(system.happens(event), transition.after) for event, transition in transitions.items()}
 
 
 def together(automata: Iterable[Sequence[sct.Edge]], encoding: Encoding, *, saturates: bool) -> Transition:

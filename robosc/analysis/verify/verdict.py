@@ -16,6 +16,7 @@ from robosc.model.semantics.roles import event_name
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from robosc.base.diagnostics import Diagnostic
     from robosc.model import sct
 
 P = ParamSpec("P")
@@ -36,6 +37,8 @@ class Outcome(StrEnum):
 
     PROVED = "proved"
     REFUTED = "refuted"
+    #: The property does not hold, but no promise is broken. `Verdict.findings` are warnings.
+    WARNED = "warned"
     #: No difference, but the examination was not exhaustive.
     SAMPLED = "sampled"
     #: Not examined; `Verdict.explanation` holds the reason.
@@ -47,9 +50,9 @@ class Verdict:
     """Answer to one question, which took `seconds`.
 
     `property` is its short name (`non-blocking`). `evidence` is the extent of the examination (`1,234 states`).
-    `explanation` is a sentence for a refuted or skipped property. `requirement` identifies the requirement in question,
-    if any. `trace` is a shortest trace from the initial state to the fault. `onwards` is a continuation and `other` a
-    second one, if the fault needs them.
+    `explanation` is a sentence unless nothing is wrong. `requirement` identifies the requirement in question, if any.
+    `trace` is a shortest trace from the initial state to the fault. `onwards` is a continuation and `other` a
+    second one, if the fault needs them. `findings` are warnings at places of the text.
     """
 
     property: str
@@ -61,6 +64,7 @@ class Verdict:
     other: tuple[TraceStep, ...] = ()
     seconds: float = 0.0
     requirement: str = ""
+    findings: tuple[Diagnostic, ...] = ()
 
 
 def measure(examine: Callable[P, Verdict], *arguments: P.args, **named: P.kwargs) -> Verdict:
@@ -123,7 +127,7 @@ def _test_case(
         verdict.seconds,
         failure=failure if refuted else None,
         skipped=verdict.explanation if skipped else None,
-        output=verdict.evidence,
+        output=f"{verdict.evidence}; {verdict.explanation}" if verdict.outcome is Outcome.WARNED else verdict.evidence,
         properties=((verifies, verdict.requirement), *_HOW) if verdict.requirement else (),
     )
 

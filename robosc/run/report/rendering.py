@@ -41,7 +41,7 @@ def as_html(contents: Mapping[str, Any]) -> str:
 def _outcomes(contents: Mapping[str, Any]) -> dict[str, int]:
     """Return the number of verdicts of each outcome."""
     outcomes = [verdict["outcome"] for verdict in contents["verdicts"]]
-    return {outcome: outcomes.count(outcome) for outcome in ("proved", "sampled", "skipped", "refuted")}
+    return {outcome: outcomes.count(outcome) for outcome in ("proved", "warned", "sampled", "skipped", "refuted")}
 
 
 def as_needs(contents: Mapping[str, Any]) -> str:
@@ -92,4 +92,6 @@ def _identifier(prefix: str, robot: str, name: str) -> str:
 
 def _status(outcomes: list[str]) -> str:
     """Return the worst of the outcomes."""
-    return next((outcome for outcome in ("refuted", "skipped", "sampled", "proved") if outcome in outcomes), "open")
+    return next(
+        (outcome for outcome in ("refuted", "skipped", "sampled", "warned", "proved") if outcome in outcomes), "open"
+    )

@@ -212,7 +212,7 @@ class LoopSimulation:
         self._loop = ControlLoop(model, settings, hooks)
         self.data = EventData(self._loop.engine, graph, types)
         #: Data and inputs of the events that a step gives.
-        self._given: dict[str, tuple[Mapping[str, Any], Mapping[str, Value]]] = {}
+        self._step_data: dict[str, tuple[Mapping[str, Any], Mapping[str, Value]]] = {}
         self._commands = {
             event.name for event in self._loop.engine.executed.events if event.role is Role.trigger and event.inputs
         }
@@ -262,13 +262,13 @@ class LoopSimulation:
         }
 
     def _perform(self, event: str, data: Mapping[str, Any], inputs: Mapping[str, Value]) -> None:
-        self._given = {event: (data, inputs)}
+        self._step_data = {event: (data, inputs)}
         self._loop.perform(event, inputs)
-        self._given = {}
+        self._step_data = {}
 
     def _before(self, event: str) -> bool:
         """Set the inputs of a command to the data that it sends, and change the variables that the node stores."""
-        data, inputs = self._given.get(event, ({}, {}))
+        data, inputs = self._step_data.get(event, ({}, {}))
         if event in self._commands:
             inputs = self.data.inputs(event, {})
             self._loop.engine.set_inputs(event, inputs)

@@ -61,6 +61,7 @@ def command(
         supervise_models(models, report)
         with progress("verifying"):
             verdicts = verify(models, settings)
+        report.add(finding for verdict in verdicts for finding in verdict.findings)
         with progress("generating"):
             texts = {_relative(model, name): files.read(name) for name in files.inputs()}
             contents = page.report(

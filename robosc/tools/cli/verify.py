@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 _STYLES = {
     Outcome.PROVED: "green",
     Outcome.REFUTED: "bold red",
+    Outcome.WARNED: "magenta",
     Outcome.SAMPLED: "yellow",
     Outcome.SKIPPED: "yellow",
 }
@@ -72,6 +73,7 @@ def command(
         steps = [""]
         with progress(lambda: f"verifying {steps[-1]}; robots with very many states take minutes"):
             verdicts = verify(models, settings, steps.append)
+        report.add(finding for verdict in verdicts for finding in verdict.findings)
     if junit:
         interruption.check()
         write_file(junit, as_junit(models.sct, verdicts, model))

@@ -93,7 +93,7 @@ robot Pairs {
 
 _LOWER, _PLANTS, _ROLES = "m2m.sct_to_engine.lower_timers", "m2m.robosc_to_sct", "model.semantics.roles"
 _AUTOMATA, _NODE, _ENGINE = "m2m.requirement_automata", "m2m.robosc_to_rosgraph", "m2m.sct_to_engine"
-_EVENTS = "m2m.sct_to_engine.collect_events"
+_EVENTS, _CONE = "m2m.sct_to_engine.collect_events", "model.semantics.cone_of_influence"
 #: A fault: module, original text, replacement, the robot that shows it, and the report.
 Fault = tuple[str, str, str, str, str]
 
@@ -227,7 +227,7 @@ LOOP: dict[str, Fault] = {
 #: Faults that only the courier shows among this repository's models.
 MODEL: dict[str, Fault] = {
     "a requirement is on the first of its set": (
-        *(_PLANTS, "dict.fromkeys(port for port in named if port is not None)", "named[:1]", "Courier"),
+        *(_CONE, "list(dict.fromkeys(port for port in named if port is not None))", "list(named)[:1]", "Courier"),
         "request to `Base.horn` is forbidden by the text (line 80), and not by the model",
     ),
     "an order is on the first of its set": (

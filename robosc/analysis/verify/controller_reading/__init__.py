@@ -5,7 +5,8 @@
 The generated C and the interpreter both execute the engine model: timers, batches, groups, the order of events and
 data, and the bound of silent events. `loop-translation` compares the C with the interpreter, so it cannot detect a
 fault of that model. `model_reading.controller` derives the meaning of the text from the pages of the language alone.
-`loop`, `times` and `topics` compare it with the engine model and the ROS graph.
+`loop`, `times` and `topics` compare it with the engine model and the ROS graph. `data` compares the conditions of the
+engine model on the inputs of commands with the supervised model.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.analysis.system import format_count
+from robosc.analysis.verify.controller_reading.data import DataComparison
 from robosc.analysis.verify.controller_reading.loop import LoopComparison
 from robosc.analysis.verify.controller_reading.times import Effort, TimeComparison
 from robosc.analysis.verify.controller_reading.topics import compare_topics
@@ -53,15 +55,19 @@ def validate_controller(models: Models, effort: Effort = ENOUGH) -> Verdict:
         return Verdict(PROPERTY, Outcome.SKIPPED, "", _UNLIKE)
     controller, executed = ControllerText(text), models.engine
     times = TimeComparison(controller, plants, executed, effort)
+    data = DataComparison(executed, effort.values)
     try:
         LoopComparison(controller, plants, executed).run()
         if models.rosgraph is not None:
             compare_topics(controller, plants, models.rosgraph)
         times.run()
+        data.run()
     except DifferenceError as difference:
         return Verdict(PROPERTY, Outcome.REFUTED, "", difference.explanation, difference.trace, difference.onwards)
     number = sum(map(len, controller.times.values()))
     evidence = f"{format_count(number, 'time')}, {format_count(len(text.events), 'event')}"
+    if data.is_sampled:
+        return Verdict(PROPERTY, Outcome.SAMPLED, f"{evidence}, without some conditions on the data of commands")
     if times.is_sampled:
         return Verdict(PROPERTY, Outcome.SAMPLED, f"{evidence}, some with random data")
     return Verdict(PROPERTY, Outcome.PROVED, evidence)

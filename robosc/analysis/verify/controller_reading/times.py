@@ -217,8 +217,10 @@ class TimeComparison:
 
         def look(encoding: Encoding) -> tuple[_Case, tuple[TraceStep, ...]] | None:
             system = GuardedSystem(self._executed.model, encoding)
-            possible = system.controlled & system.allowed[event.event]
-            states = [possible & self._states(case.state, encoding) for case in differing]
+            states = [
+                system.controlled & self._possible(event.event, case, system) & self._states(case.state, encoding)
+                for case in differing
+            ]
             together = encoding.diagrams.any_of(states)
             if not together.satisfiable():
                 return None
@@ -237,6 +239,18 @@ class TimeComparison:
             trace,
             [TraceStep(event_name(event.event), dict(case.inputs))],
         )
+
+    def _possible(self, event: sct.Event, case: _Case, system: GuardedSystem) -> Diagram:
+        """Return the states in which an event can happen: a command with the inputs of the case."""
+        relation = system.relations[event]
+        if not relation.has_data:
+            return system.allowed[event]
+        domains = self._plants.events[self._names[event]].inputs
+        inputs = [
+            system.encoding.has_code(carried, list(domains[carried.name]).index(case.inputs[carried.name]))
+            for carried in event.inputs
+        ]
+        return relation.allowed_by(system.guard(event) & system.diagrams.all_of(inputs))
 
     def _states(self, values: State, encoding: Encoding) -> Diagram:
         """Return all states in which the slots hold these values."""

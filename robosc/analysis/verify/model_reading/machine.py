@@ -135,7 +135,10 @@ class EventOutcome(NamedTuple):
 
 @dataclass
 class Event:
-    """An event with its participants and requirements; `element` is its source."""
+    """An event with its participants and requirements; `element` is its source.
+
+    In the reading of the text, `parts` are the expressions over the event's data that its inputs replace.
+    """
 
     kind: str
     controllable: bool
@@ -143,6 +146,7 @@ class Event:
     participants: list[Participant] = field(default_factory=list)
     restrictions: list[Restriction] = field(default_factory=list)
     inputs: dict[str, Domain] = field(default_factory=dict)
+    parts: dict[str, ex.Expression] = field(default_factory=dict)
     timer: Timer | None = None
 
     @property
@@ -170,7 +174,8 @@ class Machine:
     """A reading of a robot: slots with their values and initial values, marked locations, events, conditions.
 
     `conditions` are those of invariants and properties. Only the reading of the text has `topics`, the ROS name of each
-    communication, and `order`, the plants of communications and components in the order of the text.
+    communication, `order`, the plants of communications and components in the order of the text, and `provided`, the
+    `provide` statements of each choice of data with their constant data.
     """
 
     domains: dict[Slot, Domain] = field(default_factory=dict)
@@ -181,6 +186,17 @@ class Machine:
     sources: dict[Slot, ex.Located] = field(default_factory=dict)
     topics: dict[Plant, str] = field(default_factory=dict)
     order: list[Plant] = field(default_factory=list)
+    provided: dict[Plant, list[ProvidedConstant]] = field(default_factory=dict)
+
+
+class ProvidedConstant(NamedTuple):
+    """A `provide` statement. `inputs` are the values that the command's inputs have with its data.
+
+    An input is missing if this reading does not compute it. `inputs` is None if the data are not constant.
+    """
+
+    statement: ex.Located
+    inputs: Mapping[str, Value] | None
 
 
 class Claim(NamedTuple):

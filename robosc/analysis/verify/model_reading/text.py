@@ -21,6 +21,7 @@ from robosc.analysis.verify.model_reading.machine import (
     Meaning,
     Participant,
     Plant,
+    ProvidedConstant,
     Restriction,
     Slot,
     Timer,
@@ -36,6 +37,7 @@ from robosc.analysis.verify.model_reading.names import (
     NotReadError,
     words_of,
 )
+from robosc.analysis.verify.model_reading.sent_data import computed_input, constant_data
 from robosc.model import expression as ex
 from robosc.model import robosc
 from robosc.model.semantics.walks import operands, walk, with_operands
@@ -81,6 +83,8 @@ _REASONS = {
 }
 #: Events that happen even if their data cannot be read.
 _ENDS = ("u_error", "u_canceled")
+#: Events after which an action has no goal.
+_WITHOUT_GOAL = ("u_response", "u_error", "u_canceled", "c_reset")
 _UNITS = {robosc.TimeUnit.ms: 1, robosc.TimeUnit.s: 1000, robosc.TimeUnit.min: 60_000}
 
 
@@ -108,6 +112,7 @@ class _TextReading:
         self.plants = plants
         self.machine = Machine()
         self.ports: dict[Plant, _Port] = {}
+        self.statements: dict[Plant, Sequence[tuple[robosc.ProvideStatement, Environment]]] = {}
 
     def run(self) -> Machine:
         for instance in self.names:
@@ -127,6 +132,8 @@ class _TextReading:
             if isinstance(requirement, OBSERVERS):
                 self.observer(requirement, place, self.names.observer(requirement, place))
         self.claims()
+        for plant, statements in self.statements.items():
+            self.machine.provided[plant] = [self.provided_constant(*statement) for statement in statements]
         return self.machine
 
     # Communication
@@ -301,8 +308,14 @@ class _TextReading:
         place: Environment,
         name: EventName | None = None,
         assigned: Slot | None = None,
+        *,
+        of_goal: bool = False,
     ) -> Condition:
-        """Return an expression in the text of an instance, in a transition on an event, as a condition."""
+        """Return an expression in the text of an instance as a condition.
+
+        `name` is the event whose data it reads. `of_goal`: it reads the data of the running goal instead, as the
+        action's plant holds them.
+        """
         written = self.names.written_out(expression, place)
         if name is not None:
             present = None if assigned is None else self.present(written, name)
@@ -319,6 +332,9 @@ class _TextReading:
             if isinstance(target, Data):
                 words = "".join(target.words)
                 raise UnlikeError(f"the text reads `{words}`, for which the plants have no input", expression)
+            if of_goal and isinstance(target, EventInput):
+                assert name is not None
+                return self.goal(name, target.name)
             return target
 
         return compile_condition(written, meaning)
@@ -371,10 +387,11 @@ class _TextReading:
             candidate = next(iter(alike))
             domain = _REASONS[name.plant.kind] if words == ("error",) else alike[candidate]
             self.machine.events[name].inputs[candidate] = domain
+            self.machine.events[name].parts[candidate] = part
             return self.names.leaf(EventInput(candidate))
         target = self.names.meaning(part) if isinstance(part, robosc.Access) else None
         if isinstance(target, Data) and target.path is not None:
-            expected_name = "_".join(["i", name.name.removeprefix("u_"), *target.path])
+            expected_name = "_".join(["i", name.name.partition("_")[2], *target.path])
             fitted = [
                 carried.name
                 for carried in inputs
@@ -382,6 +399,7 @@ class _TextReading:
             ]
             if len(fitted) == 1:
                 self.machine.events[name].inputs[fitted[0]] = self.carried(name, target.path)
+                self.machine.events[name].parts[fitted[0]] = part
                 return self.names.leaf(EventInput(fitted[0]))
         inside = operands(part)
         if not inside:
@@ -398,6 +416,8 @@ class _TextReading:
         declared: Any = None
         if isinstance(communication, robosc.Message):
             declared = communication.type
+        elif isinstance(communication, robosc.Service | robosc.Action) and name.name == "c_trigger":
+            declared = communication.requestType
         elif isinstance(communication, robosc.Service):
             declared = communication.responseType
         elif isinstance(communication, robosc.Action):
@@ -423,6 +443,7 @@ class _TextReading:
             self.choice(Plant("data", _plant(*port).origin), outside or statements)
 
     def choice(self, plant: Plant, statements: Sequence[tuple[robosc.ProvideStatement, Environment]]) -> None:
+        self.statements[plant] = statements
         names = ("none", *(f"d{number}" for number in range(1, len(statements) + 1)))
         slot = self.locations(plant, names, "none", names, statements[0][0])
         conditions = [
@@ -436,6 +457,22 @@ class _TextReading:
         self.event(plant, "c_none", statements[0][0]).participants.append(
             _chosen(slot, "none", denied, statements[0][0])
         )
+
+    def provided_constant(self, statement: robosc.ProvideStatement, place: Environment) -> ProvidedConstant:
+        """Return a statement with the inputs that its command has if it sends these data."""
+        port = self.names.port(statement.communicationType, place)
+        trigger = self.machine.events[EventName(_plant(*port), "c_trigger")]
+        sent = constant_data(statement.data, place, self.names)
+        if sent is None:
+            return ProvidedConstant(statement, None)
+        communication: Any = port[1]
+        declared = communication.type if isinstance(communication, robosc.Message) else communication.requestType
+        inputs: dict[str, Value] = {}
+        for name, part in trigger.parts.items():
+            value = computed_input(part, sent, declared, self.names)
+            if value is not None:
+                inputs[name] = saturate(value, trigger.inputs[name])
+        return ProvidedConstant(statement, inputs)
 
     # Assumptions
 
@@ -452,25 +489,43 @@ class _TextReading:
     def required(self) -> None:
         """Add requirements to the start of their communications, and to the cancel of actions.
 
-        An action is canceled if one of its requirements does not hold.
+        An action is canceled if one of its requirements does not hold with the data of its goal.
         """
         known = (robosc.CommunicationRequirement, robosc.StateInvariant, robosc.ReachabilityRequirement, *OBSERVERS)
         for requirement, _ in self.names.definitions(robosc.Requirement):
             if not isinstance(requirement, known):
                 raise NotReadError(requirement)
-        starting: dict[EventName, list[Restriction]] = {}
+        running: dict[Plant, list[Restriction]] = {}
         for statement, place in self.names.definitions(robosc.CommunicationRequirement):
             value = not isinstance(statement, robosc.DisablesRequirement)
-            condition = self.condition(statement.condition, place)
             for name in dict.fromkeys(
                 self.of(reference, "c_trigger", place) for reference in statement.target.communicationTypes
             ):
-                starting.setdefault(name, []).append(Restriction(condition, value, statement))
-        for name, restrictions in starting.items():
-            self.machine.events[name].restrictions += restrictions
+                condition = self.condition(statement.condition, place, name)
+                self.machine.events[name].restrictions.append(Restriction(condition, value, statement))
+                if name.plant.kind == "action":
+                    condition = self.condition(statement.condition, place, name, of_goal=True)
+                    running.setdefault(name.plant, []).append(Restriction(condition, value, statement))
         for name, event in self.machine.events.items():
             if event.kind == "cancel":
-                event.restrictions.append(_broken(starting.get(EventName(name.plant, "c_trigger"), []), event.element))
+                event.restrictions.append(_broken(running.get(name.plant, []), event.element))
+
+    def goal(self, name: EventName, input_name: str) -> Slot:
+        """Return the variable that holds an input of an action's start while its goal is running.
+
+        Without a goal, it has its first value.
+        """
+        slot = Slot(name.plant, f"goal_{input_name.removeprefix('i_trigger_')}")
+        if slot not in self.machine.domains:
+            trigger = self.machine.events[name]
+            domain, source = trigger.inputs[input_name], trigger.element
+            self.slot(slot, domain, domain[0], source)
+            trigger.participants.append(_stored(slot, input_name, source))
+            for ending in _WITHOUT_GOAL:
+                self.machine.events[EventName(name.plant, ending)].participants.append(
+                    _always({slot: domain[0]}, source, frozenset({slot}))
+                )
+        return slot
 
     def observer_slots(self) -> None:
         for requirement, place in self.names.definitions(robosc.Requirement):
@@ -602,8 +657,12 @@ def _chosen(
     return Participant(step, frozenset().union(*(condition.reads for condition, _ in conditions if condition)), source)
 
 
-def _always(writes: Mapping[Slot, Value], source: ex.Located) -> Participant:
-    return Participant(lambda *_: EventEffect(writes, source), frozenset(), source)
+def _always(writes: Mapping[Slot, Value], source: ex.Located, reads: frozenset[Slot] = frozenset()) -> Participant:
+    return Participant(lambda *_: EventEffect(writes, source), reads, source)
+
+
+def _stored(slot: Slot, input_name: str, source: ex.Located) -> Participant:
+    return Participant(lambda _, inputs: EventEffect({slot: inputs[input_name]}, source), frozenset({slot}), source)
 
 
 def _only_where(condition: Condition, source: ex.Located) -> Participant:
