@@ -163,7 +163,7 @@ class EventData:
             self.tracked.before(
                 event,
                 inputs,
-                lambda read: self._received(event, value if value is _ABSENT else whole(value, read)),
+                lambda reader: self._received(event, value if value is _ABSENT else whole(value, reader)),
             )
 
     def inputs(self, event: str, data: Mapping[str, Any]) -> dict[str, Value]:

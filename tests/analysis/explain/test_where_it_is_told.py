@@ -19,7 +19,7 @@ from robosc.run.runtime.core.layer import Layer
 from robosc.run.runtime.core.settings import Settings
 from robosc.run.simulation import Simulation
 from robosc.run.simulation.session import Session
-from tests.run.runtime.fake import FakePort, supervised
+from tests.run.runtime.fake import FakePort, Record, supervised
 
 PORTER = Path(__file__).parent / "porter.rscd"
 WHY = (
@@ -95,8 +95,8 @@ def test_so_does_a_layer_that_runs(porter: rosgraph.RosGraph, tmp_path: Path) ->
     layer = Layer(porter, Settings(values, configuration), port, EventLoop(lambda: port.time))
     layer.start()
     sendings = {sending.name: sending for publisher in porter.publishers for sending in publisher.sendings}
-    assert layer.passes(sendings["open"])
-    assert not layer.passes(sendings["enter"])
+    assert layer.forwarded(sendings["open"], Record()) is not None
+    assert layer.forwarded(sendings["enter"], Record()) is None
     [report] = [json.loads(text) for topic, text in port.told if topic == "blocked"]
     assert (report["name"], report["reason"], report["because"]) == ("Base.enter", "synthesis", [WHY])
     schema = json.loads(locate("schemas/blocked.schema.json").read_text(encoding="utf-8"))
