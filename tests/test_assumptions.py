@@ -36,6 +36,7 @@ from robosc.run.runtime.core.event_loop import EventLoop
 from robosc.run.runtime.core.layer import Layer
 from robosc.run.runtime.core.port import GoalOutcome
 from robosc.run.runtime.core.settings import SafeMessages, Settings
+from robosc.run.runtime.core.violations import Violations
 from robosc.synthesis import count, synthesize
 from robosc.tools.cli import main
 from robosc.tools.view.description import describe
@@ -791,6 +792,21 @@ def generated(folder: Path, target: str, **settings: Any) -> str:
     graph = graph_of(written(folder, DRIVE))
     files = robosc.generate(target, Models(graph.model, graph), Configuration(**settings))
     return next(text for path, text in files.items() if path.endswith("_node.cpp"))
+
+
+def test_an_assumption_without_a_text_is_violated_like_any_other(tmp_path: Path) -> None:
+    graph = graph_of(written(tmp_path, DRIVE))
+    plants = assumptions_of(graph.model)
+    for plant in plants:
+        plant.text = plant.origin = None
+    files = robosc.generate("ros2", Models(graph.model, graph), Configuration())
+    names = [f'"{plant.name}"' for plant in plants]
+    assert files["src/cart_supervisor.c"].count(",\n        ".join(names)) == 2, "as names and as texts"
+    assert "if (!violated) return false;" in files["src/cart_controller_node.cpp"]
+    engine = Engine(graph.model)
+    assert engine.perform("action_drive.c_trigger")
+    violation = Violations(engine, stop=True).check(graph.subscriptions[0].receptions[0].event)
+    assert str(violation) == f"violates `{plants[0].name}`"
 
 
 @pytest.mark.parametrize("target", ["ros1", "ros2", "ros2-layer"])

@@ -12,10 +12,11 @@ from robosc.language.configuration import Configuration
 from robosc.language.configuration.parameters import controller_parameters, layer_parameters, model_parameters
 from robosc.m2t.c.preconditions import preconditions as engine_preconditions
 from robosc.model import expression as ex
-from robosc.model import rosgraph, sct
+from robosc.model import rosgraph
 from robosc.model.places import place
 from robosc.model.reflection import tree
 from robosc.model.semantics.messages import find_message, holds_objects, parts_of, path_of
+from robosc.model.semantics.roles import assumptions
 from robosc.model.semantics.typing import DOUBLE, ArrayType, declared_type, infer
 
 if TYPE_CHECKING:
@@ -179,7 +180,7 @@ def _settings(graph: rosgraph.RosGraph, configuration: Configuration) -> Iterato
 
 def _violations(graph: rosgraph.RosGraph, configuration: Configuration) -> Iterator[Diagnostic]:
     """Return warnings on a node that goes on after a violation, and on a reaction to violations that cannot occur."""
-    if not any(plant.kind == sct.PlantKind.assumption for plant in graph.model.plants):
+    if not assumptions(graph.model):
         if "on_violation" in configuration.model_fields_set:
             message = '"onViolation" has no effect: the model has no assumption'
             yield configuration.warning(("onViolation",), message)

@@ -8,7 +8,7 @@ from robosc.base.ros_types import Section
 from robosc.engine import Settings as LoopSettings
 from robosc.model import engine, rosgraph
 from robosc.model.semantics.operators import UnreadableError
-from robosc.model.semantics.roles import event_name, plant_of
+from robosc.model.semantics.roles import assumption_text, event_name, plant_of
 from robosc.run.runtime.core.composer import Composer
 from robosc.run.runtime.core.event_handler import EventHandler
 from robosc.run.runtime.core.json_text import Json, json_text
@@ -81,7 +81,7 @@ class Layer(EventHandler):
                     self._forwarded.add(sending)
                 return True
         if self._violations.stopped:
-            texts = [assumption.text or assumption.name for assumption in self._violations.assumptions]
+            texts = list(map(assumption_text, self._violations.assumptions))
             self._report_blocked(sending.event, "assumption", texts)
         else:
             reason = self._blocking.reason(sending.event)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.model.semantics.operators import UnreadableError
-from robosc.model.semantics.roles import assumption_name, component_name, event_name
+from robosc.model.semantics.roles import assumption_name, assumption_text, assumptions, component_name, event_name
 
 if TYPE_CHECKING:
     from robosc.engine import Engine
@@ -25,7 +25,7 @@ class Violations:
     def __init__(self, engine: Engine, *, stop: bool) -> None:
         self.engine = engine
         self._stop = stop
-        self.exist = any(event.guard.assumption is not None for event in engine.executed.events)
+        self.exist = bool(assumptions(engine.model))
         self.assumptions: dict[sct.Plant, None] = {}
         self.names: list[str] = []
         self._by_component: dict[str, dict[sct.Plant, None]] = {}
@@ -40,7 +40,7 @@ class Violations:
         self.names += map(assumption_name, violated)
         for assumption in violated:
             self.assumptions[assumption] = known[assumption] = None
-        return ViolationError(f"violates `{'` and `'.join(assumption.text or '' for assumption in violated)}`")
+        return ViolationError(f"violates `{'` and `'.join(map(assumption_text, violated))}`")
 
     @property
     def stopped(self) -> bool:
