@@ -536,6 +536,7 @@ def test_stop(tmp_path: Path) -> None:
     assert "/lamp" in sent
     world.hear("done", data=True)
     world.port.sent.clear()
+    assert any(text.startswith("commands are held back: the robot violated an assumption") for text in world.port.said)
     world.wait(2.0)
     assert world.port.sent == []
     assert ("outside", "message_safe.c_trigger") in log_of(world)
@@ -573,6 +574,51 @@ def test_warnings(tmp_path: Path, kind: str) -> None:
     other = tmp_path / "other.rscd"
     other.write_text(re.sub(r" +assume .*\n", "", DRIVE))
     assert '"onViolation" has no effect: the model has no assumption' in findings_of(other, kind, on_violation="stop")
+
+
+@pytest.mark.parametrize(
+    ("settings", "expected"),
+    [
+        ({}, [config.NO_STOP, config.NO_STOP_ON_VIOLATION]),
+        ({"on_shutdown": []}, [config.NO_STOP_ON_VIOLATION]),
+        ({"on_shutdown": ["velocity"]}, []),
+        ({"on_shutdown": [], "on_violation": "report"}, [config.REPORTS_VIOLATIONS]),
+    ],
+)
+def test_a_node_warns_that_a_violation_does_not_stop_the_robot(
+    tmp_path: Path, settings: dict[str, Any], expected: list[str]
+) -> None:
+    world = World(written(tmp_path, DRIVE), tmp_path / "log.jsonl", Configuration(**settings)).start()
+    assert world.port.said == expected
+    for target in ("ros1", "ros2"):
+        node = re.sub(r'"\n\s*"', "", generated(tmp_path, target, **settings))
+        body = node[node.index("void warn_of_no_stop()") :] if "void warn_of_no_stop()" in node else ""
+        body = body.partition("  }\n")[0]
+        assert [
+            text for text in (config.NO_STOP, config.NO_STOP_ON_VIOLATION, config.REPORTS_VIOLATIONS) if text in body
+        ] == expected
+        assert (config.NO_STOP_ON_VIOLATION in node) == (config.NO_STOP_ON_VIOLATION in expected)
+
+
+UNGUARDED = """robot Cart {
+  component Base {
+    incoming message velocity with identifier: "/velocity", type: geometry_msgs/Twist
+    outgoing message told with identifier: "/told", type: none
+    behaviour { initial marked state still { on response from told goto moving } marked state moving {} }
+  }
+  assume told needs Base.still
+}
+"""
+
+
+def test_a_layer_may_block_each_command_after_a_violation(tmp_path: Path) -> None:
+    """Nothing else can block the velocity."""
+    path = written(tmp_path, UNGUARDED)
+    (blocked,) = findings_of(path, "layer")
+    assert blocked.startswith("the layer can block velocity, also one that stops the robot")
+    assert findings_of(path, "layer", on_blocked=[]) == []
+    (reported,) = findings_of(path, "layer", on_violation="report")
+    assert reported.startswith('"onViolation": after the first violation')
 
 
 class Bench:

@@ -222,7 +222,8 @@ def _swallowed(
     """Return warnings on messages that keep the robot moving and that a layer may block without notice to the robot."""
     if "on_blocked" in configuration.model_fields_set:
         return
-    blockable = {event.event for event in executed.events if event.reasons}
+    stops = configuration.stops_on_violation(graph.model)
+    blockable = {event.event for event in executed.events if stops or event.reasons}
     for publisher in graph.publishers:
         kind = f"{publisher.interface.package}/{publisher.interface.type}"
         for sending in publisher.sendings:
@@ -251,6 +252,11 @@ def _nothing_safe(graph: rosgraph.RosGraph, configuration: Configuration) -> Ite
         message = '"onShutdown" is not set: when the node ends, the robot continues with its last command'
         hint = 'name the message that stops it, as in "onShutdown": ["halt"]; if no message can, write []'
         yield configuration.warning(("onShutdown",), message, hint)
+    if configuration.stops_on_violation(graph.model) and not configuration.on_shutdown:
+        message = (
+            'a violation of an assumption only holds commands back: "onShutdown" names no message that stops the robot'
+        )
+        yield configuration.warning(("onShutdown",), message, 'name the message that stops it: "onShutdown": ["halt"]')
     if "on_withheld" not in configuration.model_fields_set:
         outside = _from_outside(graph)
         for sending in (sending for publisher in graph.publishers for sending in publisher.sendings):

@@ -185,6 +185,26 @@ def test_where_nothing_stops_the_robot(tmp_path: Path, settings: str, expected: 
     assert found(tmp_path, settings, Severity.WARNING) == [], "it sends no messages"
 
 
+REPORTS = '"onViolation": after the first violation of an assumption, nothing about the robot is proved'
+VIOLATED = 'a violation of an assumption only holds commands back: "onShutdown" names no message that stops the robot'
+
+
+@pytest.mark.parametrize(
+    ("settings", "expected"),
+    [
+        ("{}", ['"onShutdown" is not set: when the node ends, the robot continues with its last command', VIOLATED]),
+        ('{"onShutdown": []}', [VIOLATED]),
+        ('{"onShutdown": ["go"]}', ['"onShutdown": go is then sent regardless of "requirement Eye.open disables go"']),
+        ('{"onShutdown": [], "onViolation": "report"}', [REPORTS]),
+    ],
+)
+def test_where_nothing_stops_the_robot_after_a_violation(tmp_path: Path, settings: str, expected: list[str]) -> None:
+    more = MORE.replace("requirement Eye", "assume seen needs Eye.open requirement Eye", 1)
+    assert more != MORE
+    expected = [f"controller-config.json:1: {message}" for message in expected]
+    assert found(tmp_path, settings, Severity.WARNING, more=more) == expected
+
+
 DOUBLES = """incoming message drive with type: double
   }
   component Eye {

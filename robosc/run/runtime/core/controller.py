@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.base.ros_types import Section
 from robosc.engine import Settings as LoopSettings
-from robosc.language.configuration import NO_STOP, NO_STOP_ON_SILENCE
+from robosc.language.configuration import NO_STOP, NO_STOP_ON_SILENCE, NO_STOP_ON_VIOLATION
 from robosc.language.configuration.parameters import topic_words, watchdog
 from robosc.model.semantics.messages import paths_set
 from robosc.model.semantics.operators import UnreadableError
@@ -148,6 +148,8 @@ class Controller(EventHandler):
                 self._port.warn(NO_STOP_ON_SILENCE)
             elif not self._settings.configuration.says_how_to_stop:
                 self._port.warn(NO_STOP)
+            if self._violations.stop:
+                self._port.warn(NO_STOP_ON_VIOLATION)
         self._warn_of_report()
         if self._unheard:
             self._port.info(f"commands wait for {_topics(self._unheard)}")

@@ -94,7 +94,7 @@ class EventHandler:
         self._parameters = {known.name: parameter for parameter, known in model_parameters(graph).items()}
         self.set_parameters(settings.parameters)
         self._times = Times(self._control.timers, event_loop, self._expire)
-        stop = settings.configuration.on_violation == "stop"
+        stop = settings.configuration.stops_on_violation(graph.model)
         self._violations = Violations(self._control.engine, stop=stop)
         self._reports = StateReporter(graph, self._data, port, settings.configuration, self._violations)
         self._blocking = Blocking(self._control.engine)
@@ -179,7 +179,9 @@ class EventHandler:
     def _stop_if_violated(self) -> None:
         """Stop the robot after the first violation, unless the node only reports violations."""
         if self._violations.must_halt():
-            self._port.error("the robot is stopped: it violated an assumption, and is no longer as the model describes")
+            self._port.error(
+                "commands are held back: the robot violated an assumption, and is no longer as the model describes"
+            )
             self._halt()
 
     def _halt(self) -> None:

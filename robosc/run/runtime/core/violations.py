@@ -24,7 +24,7 @@ class Violations:
 
     def __init__(self, engine: Engine, *, stop: bool) -> None:
         self.engine = engine
-        self._stop = stop
+        self.stop = stop
         self.exist = bool(assumptions(engine.model))
         self.assumptions: dict[sct.Plant, None] = {}
         self.names: list[str] = []
@@ -45,7 +45,7 @@ class Violations:
     @property
     def stopped(self) -> bool:
         """Whether a violation has stopped the robot."""
-        return self._stop and bool(self.assumptions)
+        return self.stop and bool(self.assumptions)
 
     def must_halt(self) -> bool:
         """Return whether the robot is to be stopped now: once, after the first violation."""
