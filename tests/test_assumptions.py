@@ -869,10 +869,18 @@ def test_generated_nodes(tmp_path: Path, target: str) -> None:
 
 
 def test_a_managed_node_begins_anew(tmp_path: Path) -> None:
-    """Its activation ends the stop."""
+    """Its deactivation ends the stop. A violation while it is inactive stops the robot at its activation."""
     text = generated(tmp_path, "ros2", lifecycle=True)
-    activation = text[text.index("void activate()") : text.index("void deactivate()")]
-    assert "violations_ = Violations<cart_event>();" in activation
+    activation, deactivation, cleanup = (
+        text[text.index(f"void {name}() override {{") :].partition("\n  }\n")[0]
+        for name in ("activate", "deactivate", "disconnect")
+    )
+    forgets = "    violations_ = Violations<cart_event>();\n"
+    assert forgets not in activation
+    assert activation.endswith("    stop_if_violated();")
+    assert activation.index("active_ = true;") < activation.index("stop_if_violated();")
+    assert deactivation.index("halt();") < deactivation.index(forgets)
+    assert forgets in cleanup
     assert "if (!active_ || !violations_.must_halt()) return;" in text
 
 
