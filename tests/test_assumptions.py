@@ -627,8 +627,8 @@ class Bench:
     trouble = ""
     waits = False
 
-    def __init__(self, folder: Path, on_blocked: Sequence[str] = ()) -> None:
-        self.graph = graph_of(written(folder, DRIVE))
+    def __init__(self, folder: Path, on_blocked: Sequence[str] = (), text: str = DRIVE) -> None:
+        self.graph = graph_of(written(folder, text))
         self.port = FakePort()
         configuration = Configuration()
         log = str(folder / "layer.jsonl")
@@ -648,19 +648,52 @@ class Bench:
     def leave(self) -> None:
         """Nothing runs at the end."""
 
+    def command(self, name: str) -> bool:
+        """Send a message of the controller; return whether it passes."""
+        sending = find_message(self.graph, name)
+        assert sending is not None
+        return self.layer.passes(sending)
+
+    def open_door(self) -> None:
+        """Send `opened` from the robot, which violates A3 unless the base is parked."""
+        opened = next(each for each in self.graph.subscriptions if each.topic == "/opened")
+        self.layer.receive(opened, Record())  # the node behind it forwards the message itself
+
 
 def test_layer(tmp_path: Path) -> None:
     bench = Bench(tmp_path, ["velocity"])
-    (action,), velocity = bench.graph.actionClients, find_message(bench.graph, "velocity")
-    assert velocity is not None
+    (action,) = bench.graph.actionClients
+    assert bench.command("velocity")
     assert bench.layer.passes(action.request)
-    opened = next(each for each in bench.graph.subscriptions if each.topic == "/opened")
-    bench.layer.receive(opened, Record())  # the node behind it forwards the message itself
+    bench.open_door()
     assert bench.cancels >= 1
     assert [topic for topic, _ in bench.port.sent] == ["/velocity"]
-    assert not bench.layer.passes(velocity)
+    assert not bench.command("velocity")
+    assert not bench.command("velocity")
+    assert [topic for topic, _ in bench.port.sent] == ["/velocity"], "its own message is not sent again"
     blocked = json.loads([text for name, text in bench.port.told if name == "blocked"][-1])
     assert (blocked["reason"], blocked["because"]) == ("assumption", ["assume A3: opened needs Base.parked"])
+
+
+LIT = DRIVE.replace(
+    "  requirement velocity",
+    """  component Lamp {
+    incoming message lights with identifier: "/lights", type: none
+    incoming message horn with identifier: "/horn", type: none
+  }
+  requirement velocity""",
+)
+
+
+@pytest.mark.parametrize("names", [["velocity", "lights"], ["lights", "velocity"], ["horn", "velocity", "lights"]])
+def test_a_layer_sends_its_messages_in_the_configured_order(tmp_path: Path, names: list[str]) -> None:
+    bench = Bench(tmp_path, names, LIT)
+    (action,) = bench.graph.actionClients
+    assert bench.layer.passes(action.request)
+    bench.open_door()
+    assert [topic for topic, _ in bench.port.sent] == [f"/{name}" for name in names]
+    node = generated(tmp_path, "ros2-layer", text=LIT, on_blocked=names)
+    assert re.findall(r"    send_(\w+)\(\);", body_of(node, "void halt()")) == names
 
 
 # Tools
@@ -833,9 +866,9 @@ def test_a_saved_assumption_that_does_not_fit(tmp_path: Path) -> None:
         validity.load(path)
 
 
-def generated(folder: Path, target: str, **settings: Any) -> str:
+def generated(folder: Path, target: str, text: str = DRIVE, **settings: Any) -> str:
     """Return the source of a node of the cart."""
-    graph = graph_of(written(folder, DRIVE))
+    graph = graph_of(written(folder, text))
     files = robosc.generate(target, Models(graph.model, graph), Configuration(**settings))
     return next(text for path, text in files.items() if path.endswith("_node.cpp"))
 
@@ -855,16 +888,33 @@ def test_an_assumption_without_a_text_is_violated_like_any_other(tmp_path: Path)
     assert str(violation) == f"violates `{plants[0].name}`"
 
 
+def body_of(node: str, function: str) -> str:
+    """Return a method of a generated node, from its name on."""
+    return node[node.index(f"  {function}") :].partition("\n  }\n")[0]
+
+
 @pytest.mark.parametrize("target", ["ros1", "ros2", "ros2-layer"])
 def test_generated_nodes(tmp_path: Path, target: str) -> None:
     stopping = generated(tmp_path, target, on_shutdown=["velocity"], on_blocked=["velocity"])
     assert 'if (violates(cart_message_opened_u_response, "Door")) {' in stopping
     assert stopping.count("stop_if_violated();") > 3
     assert 'log_.write(seconds(), "violated", cart_event_name(cart_action_drive_u_response));' in stopping
-    assert ("violations_.empty() && " in stopping) == (target == "ros2-layer")
+    halting = body_of(stopping, "void halt()")
+    assert "_cancel" in halting
+    if target == "ros2-layer":
+        assert "    if (violations_.empty() && cart_perform(" in body_of(stopping, "bool pass_velocity()")
+        assert "    velocity_forwarded_ = false;\n    send_velocity();" in halting
+    else:
+        assert "const {\n    if (!violations_.empty()) return true;\n" in body_of(stopping, "bool held()")
+        handler = body_of(stopping, "void on_opened(")
+        refused, _, accepted = handler.partition("    } else {\n")
+        assert "      read_whole = false;\n" in refused
+        assert "    if (read_whole && opened_watchdog_->hear())" in accepted
+        assert "velocity_publisher_" in halting
     reporting = generated(tmp_path, target, on_violation="report")
     assert "violates(" in reporting
     assert "stop_if_violated" not in reporting
+    assert "violations_.empty()" not in reporting
     assert "onViolation is report" in reporting
 
 
@@ -872,8 +922,7 @@ def test_a_managed_node_begins_anew(tmp_path: Path) -> None:
     """Its deactivation ends the stop. A violation while it is inactive stops the robot at its activation."""
     text = generated(tmp_path, "ros2", lifecycle=True)
     activation, deactivation, cleanup = (
-        text[text.index(f"void {name}() override {{") :].partition("\n  }\n")[0]
-        for name in ("activate", "deactivate", "disconnect")
+        body_of(text, f"void {name}()") for name in ("activate", "deactivate", "disconnect")
     )
     forgets = "    violations_ = Violations<cart_event>();\n"
     assert forgets not in activation

@@ -200,10 +200,7 @@ class Controller(EventHandler):
 
     def _halt(self) -> None:
         """Cancel running actions, then send the last messages regardless of their requirements."""
-        with self._batch():
-            for event, client in self.goals.items():
-                self._control.perform(event_name(event))
-                client.cancel()
+        self._cancel_goals()
         self._send_outside(self._safe.on_shutdown)
 
     def _send_outside(self, messages: Sequence[rosgraph.Sending]) -> None:
@@ -277,8 +274,10 @@ class Controller(EventHandler):
             return f"it waits for {_topics(self._unheard)}"
         if self._stopping:
             return "the node is not active"
+        if violated := super()._held_back(event):
+            return violated
         if self._halted:
-            return "an assumption is violated" if self._violations.stopped else "a topic is silent"
+            return "a topic is silent"
         return "its data can't be sent" if event_name(event) in self._withheld else None
 
     def _faults(self, parts: Parts) -> list[str]:

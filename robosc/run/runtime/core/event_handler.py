@@ -188,6 +188,13 @@ class EventHandler:
         """Stop the robot."""
         raise NotImplementedError
 
+    def _cancel_goals(self) -> None:
+        """Cancel all goals, in the model, too."""
+        with self._batch():
+            for event, goals in self.goals.items():
+                self._control.perform(event_name(event))
+                goals.cancel()
+
     def _warn_of_report(self) -> None:
         """Warn at the start if the node goes on after a violation."""
         if self._violations.exist and self._settings.configuration.on_violation == "report":
@@ -364,9 +371,9 @@ class EventHandler:
 
     # Contents of `/diagnostics`
 
-    def _held_back(self, event: sct.Event) -> str | None:  # noqa: ARG002  # a layer forwards all allowed commands
+    def _held_back(self, event: sct.Event) -> str | None:  # noqa: ARG002  # a violation holds back all commands
         """Return why a command that the supervisor allows is not sent; None if it can be sent."""
-        return None
+        return "an assumption is violated" if self._violations.stopped else None
 
     def _faults(self, parts: Parts) -> list[str]:
         """Return the faults of a component."""
