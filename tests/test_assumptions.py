@@ -450,7 +450,7 @@ def test_violation(tmp_path: Path) -> None:
     assert state["violated"] == ["A1"]
     assert state["components"]["M1"]["variables"] == {"last": False, "counted": True, "stored": 0.0}
     (status,) = [each for each in world.port.statuses[-1] if each.component == "M1"]
-    assert status.fails
+    assert status.level == "ERROR"
     assert "violated: A1" in status.message
     assert any("violates `assume A1" in text for text in world.port.said)
 
@@ -500,10 +500,37 @@ def test_response(tmp_path: Path) -> None:
     (call,) = world.port.calls
     call.answered(Record())
     world.wait(0.01)
+    assert len([text for text in world.port.said if "violates `assume A2" in text]) == 1
     assert log_of(world)[-2:] == [("violated", "service_work.u_response"), ("in", "service_work.u_error")]
     world.wait(0.1)
     assert state_of(world.port)["components"]["M1"]["state"] == "unread"
     assert state_of(world.port)["violated"] == ["A2"]
+
+
+def test_a_violation_leaves_nothing_but_its_assumptions() -> None:
+    """A node that goes on does not grow with each violation."""
+    model = model_of(SHOP)
+    violations = Violations(Engine(model), stop=False)
+    done = next(event for plant in model.plants for event in plant.events if event.eContainer().origin == "M1.done")
+
+    def sizes() -> dict[str, int]:
+        return {name: len(value) for name, value in vars(violations).items() if isinstance(value, (dict, list, set))}
+
+    fault = violations.check(done)
+    assert fault is not None
+    assert fault.assumptions == assumptions_of(model)[:1]
+    before = sizes()
+    assert violations.check(done) is not None
+    assert sizes() == before
+
+
+@pytest.mark.parametrize("target", ["ros1", "ros2", "ros2-layer"])
+def test_a_violating_response_is_reported_once(tmp_path: Path, target: str) -> None:
+    handler = body_of(generated(tmp_path, target), "void on_drive_response(")
+    violated = handler[handler.index("if (violates(") : handler.index("    } else {\n")]
+    assert "cart_action_drive_u_error" in violated
+    assert "WARN" not in violated
+    assert ("drive_fault_ = violation_;" in violated) == (target != "ros2-layer")
 
 
 def test_goal(tmp_path: Path) -> None:
@@ -540,7 +567,7 @@ def test_stop(tmp_path: Path) -> None:
     world.wait(2.0)
     assert world.port.sent == []
     assert ("outside", "message_safe.c_trigger") in log_of(world)
-    assert [each for each in world.port.statuses[-1] if each.fails]
+    assert [each for each in world.port.statuses[-1] if each.level == "ERROR"]
     (tmp_path / "cart").mkdir()
     cart = World(written(tmp_path / "cart", DRIVE), tmp_path / "cart.jsonl").start()
     cart.wait(0.3)
@@ -930,7 +957,7 @@ def test_a_managed_node_begins_anew(tmp_path: Path) -> None:
     assert activation.index("active_ = true;") < activation.index("stop_if_violated();")
     assert deactivation.index("halt();") < deactivation.index(forgets)
     assert forgets in cleanup
-    assert "if (!active_ || !violations_.must_halt()) return;" in text
+    assert "if (!active_ || !violations_.take_halt()) return;" in text
 
 
 @pytest.mark.parametrize("text", [SHOP, DRIVE], ids=["shop", "cart"])

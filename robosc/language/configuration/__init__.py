@@ -232,7 +232,7 @@ class Configuration(_Settings):
     on_violation: Literal["stop", "report"] = Field(
         default="stop",
         description="Reaction to an event from the robot that violates an assumption. stop: hold commands back, cancel"
-        " actions and send onShutdown, until the node is started again. report: go on.",
+        " actions and send onShutdown, a layer onBlocked, until the node is started again. report: go on.",
     )
     lifecycle: bool = Field(default=False, description="Whether the ROS 2 node is a managed (lifecycle) node.")
     package: Package = Package()

@@ -236,6 +236,7 @@ class RosTarget:
             writes_log=configuration.write_events_to_log,
             definition=definition_text(graph),
             no_stop=_no_stop(node, configuration, stops_on_violation=stops_on_violation),
+            reports_violations=REPORTS_VIOLATIONS if node.assumed and not stops_on_violation else "",
             stops_on_violation=stops_on_violation,
             awaited=_awaited(node, configuration) if kind == "controller" else [],
             turned=_turned(node) if ros.version == 1 else [],
@@ -372,11 +373,10 @@ def launch_path(configuration: Configuration) -> str:
 
 
 def _no_stop(node: GeneratedNode, configuration: Configuration, *, stops_on_violation: bool) -> list[tuple[str, str]]:
-    """Return the warnings at the node's start that nothing stops the robot, or no violation, with their conditions."""
-    reports = [("", REPORTS_VIOLATIONS)] if node.assumed and configuration.on_violation == "report" else []
+    """Return the warnings at the node's start that nothing stops the robot, with their conditions."""
     if node.shutdown or not node.publishers:
-        return reports
+        return []
     silence = [("watchdog_stops_", NO_STOP_ON_SILENCE)] if node.subscriptions else []
     end = [] if configuration.says_how_to_stop else [("!watchdog_stops_" if silence else "", NO_STOP)]
     violation = [("", NO_STOP_ON_VIOLATION)] if stops_on_violation else []
-    return [*silence, *end, *violation, *reports]
+    return [*silence, *end, *violation]

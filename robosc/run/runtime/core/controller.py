@@ -232,12 +232,12 @@ class Controller(EventHandler):
     def _note_success(self, client: Client) -> None:
         self._failures[client].why = ""
 
-    def _note_failure(self, client: Client, why: str) -> None:
+    def _note_failure(self, client: Client, why: str, *, logged: bool = False) -> None:
         if self._monitor.has_other_type(client):
             why = OTHER_TYPE
         failure = self._failures[client]
         if failure.why != why:
-            super()._note_failure(client, why)
+            super()._note_failure(client, why, logged=logged)
         failure.why = why
         failure.pause = self._event_loop.call_later(self._settings.seconds("retry_ms"), partial(self._retry, failure))
 

@@ -96,7 +96,8 @@ class EventHandler:
         self._times = Times(self._control.timers, event_loop, self._expire)
         stop = settings.configuration.stops_on_violation(graph.model)
         self._violations = Violations(self._control.engine, stop=stop)
-        self._reports = StateReporter(graph, self._data, port, settings.configuration, self._violations)
+        configuration, controlled = settings.configuration, self._control.engine
+        self._reports = StateReporter(graph, controlled, self._data, port, configuration, self._violations)
         self._blocking = Blocking(self._control.engine)
         own = Own(self._violations.of, self._held_back, self._faults)
         self._statuses = StatusReporter(graph, port, self._data, self._blocking, own)
@@ -178,7 +179,7 @@ class EventHandler:
 
     def _stop_if_violated(self) -> None:
         """Stop the robot after the first violation, unless the node only reports violations."""
-        if self._violations.must_halt():
+        if self._violations.take_halt():
             self._port.error(
                 "commands are held back: the robot violated an assumption, and is no longer as the model describes"
             )
@@ -241,7 +242,7 @@ class EventHandler:
             response = client.response.event
             fault = self._perform(response, client.response.inputs, message)
             if fault is not None:
-                self._note_failure(client, str(fault))
+                self._note_failure(client, str(fault), logged=isinstance(fault, ViolationError))
                 self._end(client.error, Failure.UNREADABLE, message, response)
             else:
                 self._note_success(client)
@@ -277,9 +278,10 @@ class EventHandler:
     def _note_success(self, client: Client) -> None:
         """Note a response of a call or goal that can be read."""
 
-    def _note_failure(self, client: Client, why: str) -> None:
-        """Note that a call or goal has failed."""
-        self._port.warn(f"{client.identifier}: {why}")
+    def _note_failure(self, client: Client, why: str, *, logged: bool = False) -> None:
+        """Note that a call or goal has failed, and warn about it unless the reason is `logged` already."""
+        if not logged:
+            self._port.warn(f"{client.identifier}: {why}")
 
     def _perform(
         self,

@@ -32,8 +32,8 @@ class Violations {
 
   bool empty() const { return names_.empty(); }
 
-  /// Whether to stop the robot now: once, after the first violation.
-  bool must_halt() { return !empty() && !std::exchange(halted_, true); }
+  /// Returns whether to stop the robot now. The answer is positive once, after the first violation.
+  bool take_halt() { return !empty() && !std::exchange(halted_, true); }
 
   /// Whether there are more assumptions than at the last call.
   bool changed() { return std::exchange(reported_, names_.size()) < names_.size(); }
