@@ -19,6 +19,7 @@ from robosc.analysis.supervise import supervise
 from robosc.analysis.verify import validate_c, validate_cif, verify_system
 from robosc.analysis.verify.verdict import Outcome
 from robosc.base.diagnostics import ModelError, Severity
+from robosc.base.ros_types import RosTypes
 from robosc.engine import Blocked, Engine
 from robosc.language import configuration as config
 from robosc.language.configuration import Configuration
@@ -41,6 +42,7 @@ from robosc.synthesis import count, synthesize
 from robosc.tools.cli import main
 from robosc.tools.view.description import describe
 from tests.language.second_edition import errors, supervised
+from tests.m2t.conftest import ROS1_INTERFACES
 from tests.random_assumptions import assuming_robot
 from tests.run.node_tests.in_process_node import InProcessNode
 from tests.run.runtime.fake import FakePort, Record, World
@@ -896,7 +898,8 @@ def test_a_saved_assumption_that_does_not_fit(tmp_path: Path) -> None:
 def generated(folder: Path, target: str, text: str = DRIVE, **settings: Any) -> str:
     """Return the source of a node of the cart."""
     graph = graph_of(written(folder, text))
-    files = robosc.generate(target, Models(graph.model, graph), Configuration(**settings))
+    models = Models(graph.model, graph, ros_types=RosTypes([ROS1_INTERFACES]))
+    files = robosc.generate(target, models, Configuration(**settings))
     return next(text for path, text in files.items() if path.endswith("_node.cpp"))
 
 

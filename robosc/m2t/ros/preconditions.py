@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from robosc.base.diagnostics import START, Diagnostic, Severity
+from robosc.base.ros_types import RosTypes
 from robosc.language.configuration import Configuration
 from robosc.language.configuration.parameters import controller_parameters, layer_parameters, model_parameters
 from robosc.m2t.c.preconditions import preconditions as engine_preconditions
@@ -60,6 +61,7 @@ def preconditions(models: Models, configuration: Configuration, kind: str, ros: 
         message = "this model has no ROS graph: generate from the .rscd or the .rosgraph.xmi"
         return [Diagnostic(models.sct.name, START, Severity.ERROR, RULE, message)]
     findings = [*engine_preconditions(models.sct), *_names(graph), *_types(graph)]
+    findings += _packages(graph, models.ros_types or RosTypes(), ros)
     findings += _parameters(graph, configuration, kind, ros)
     if configuration.typed_state and not configuration.publish_state_information:
         hint = 'leave out "publishStateInformation": false'
@@ -115,6 +117,20 @@ def _names(graph: rosgraph.RosGraph) -> Iterator[Diagnostic]:
     for element, name in _fields(graph):
         if not _FIELD.fullmatch(name):
             yield _error(element, f'"{name}" is not a name of a field in ROS')
+
+
+def _packages(graph: rosgraph.RosGraph, ros_types: RosTypes, ros: int) -> Iterator[Diagnostic]:
+    """Return errors on types of packages that only the other ROS version has: the node could not be built."""
+    distribution, other = ros_types.distribution(ros), ros_types.distribution(3 - ros)
+    for interface in graph.interfaces:
+        package = interface.package
+        if distribution.lacks_package(package):
+            message = f"{distribution.name} has no package {package}, only {other.name} has it"
+            hint = (
+                f"generate for {other.name}; if you have a {package} for {distribution.name}, add its folder with"
+                " --interface-path or ROBOSC_INTERFACE_PATH"
+            )
+            yield _error(interface, message, hint)
 
 
 def _parameters(graph: rosgraph.RosGraph, configuration: Configuration, kind: str, ros: int) -> Iterator[Diagnostic]:
