@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 from click.testing import CliRunner
+from jsonschema import Draft202012Validator
 
 import robosc
 from robosc.analysis.explain import explain, explore, find_event
@@ -19,6 +20,7 @@ from robosc.analysis.supervise import supervise
 from robosc.analysis.verify import validate_c, validate_cif, verify_system
 from robosc.analysis.verify.verdict import Outcome
 from robosc.base.diagnostics import ModelError, Severity
+from robosc.base.files.resources import locate
 from robosc.base.ros_types import RosTypes
 from robosc.engine import Blocked, Engine
 from robosc.language import configuration as config
@@ -29,6 +31,7 @@ from robosc.m2t.models import Models
 from robosc.m2t.ros.preconditions import preconditions
 from robosc.m2t.targets import TARGETS
 from robosc.model import sct, validity
+from robosc.model.semantics.definition import definition_text
 from robosc.model.semantics.messages import find_message
 from robosc.run.node_tests import trace_player
 from robosc.run.node_tests.trace_test import trace_test_of
@@ -921,6 +924,38 @@ def test_an_assumption_without_a_text_is_violated_like_any_other(tmp_path: Path)
 def body_of(node: str, function: str) -> str:
     """Return a method of a generated node, from its name on."""
     return node[node.index(f"  {function}") :].partition("\n  }\n")[0]
+
+
+def test_the_definition_lists_them() -> None:
+    robot = robosc.load(text=SHOP)
+    graph = robosc.to_rosgraph(robot)
+    told = json.loads(definition_text(graph))
+    Draft202012Validator(json.loads(locate("schemas/definition.schema.json").read_text())).validate(told)
+    names = {"A1": "message_done.u_response", "A2": "service_work.u_response"}
+    assert {each["name"]: each["events"] for each in told["assumptions"]} == {
+        name: [event] for name, event in names.items()
+    }
+    assert [each["text"] for each in told["assumptions"]] == [plant.text for plant in assumptions_of(graph.model)]
+    assert {each["kind"] for each in told["communications"]} == {"message", "service"}
+    assert "assumptions" not in json.loads(
+        definition_text(robosc.to_rosgraph(robosc.load(text=re.sub(r"  assume .*\n", "", SHOP))))
+    )
+
+
+@pytest.mark.parametrize("target", ["ros1", "ros2", "ros2-layer"])
+def test_the_typed_state_has_the_violated_ones(tmp_path: Path, target: str) -> None:
+    graph = graph_of(written(tmp_path, DRIVE))
+    typed = Configuration(typed_state=True)
+    (message,) = [
+        text
+        for path, text in TARGETS[target].beside(Models(graph.model, graph), typed).items()
+        if path.endswith("State.msg")
+    ]
+    assert message.endswith(
+        "# The assumptions that the robot has violated, by name or else by text.\nstring[] violated\n"
+    )
+    node = generated(tmp_path, target, typed_state=True)
+    assert "    report.violated = violations_.names();\n" in node
 
 
 @pytest.mark.parametrize("target", ["ros1", "ros2", "ros2-layer"])

@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "robosc/json.hpp"
 #include "robosc/throttle.hpp"
 #include "robosc/version.hpp"
 
@@ -40,11 +39,7 @@ class Violations {
 
   const std::vector<std::string>& texts() const { return texts_; }
 
-  Json names() const {
-    Json list = Json::array();
-    for (const std::string& name : names_) list.add(name);
-    return list;
-  }
+  const std::vector<std::string>& names() const { return names_; }
 
   /// The names of the assumptions that events of a component have violated.
   std::vector<std::string> of(const std::string& component) const {
