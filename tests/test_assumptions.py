@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 from click.testing import CliRunner
+from jsonschema import Draft202012Validator
 
 import robosc
 from robosc.analysis.explain import explain, explore, find_event
@@ -19,6 +20,8 @@ from robosc.analysis.supervise import supervise
 from robosc.analysis.verify import validate_c, validate_cif, verify_system
 from robosc.analysis.verify.verdict import Outcome
 from robosc.base.diagnostics import ModelError, Severity
+from robosc.base.files.resources import locate
+from robosc.base.ros_types import RosTypes
 from robosc.engine import Blocked, Engine
 from robosc.language import configuration as config
 from robosc.language.configuration import Configuration
@@ -28,6 +31,7 @@ from robosc.m2t.models import Models
 from robosc.m2t.ros.preconditions import preconditions
 from robosc.m2t.targets import TARGETS
 from robosc.model import sct, validity
+from robosc.model.semantics.definition import definition_text
 from robosc.model.semantics.messages import find_message
 from robosc.run.node_tests import trace_player
 from robosc.run.node_tests.trace_test import trace_test_of
@@ -36,10 +40,12 @@ from robosc.run.runtime.core.event_loop import EventLoop
 from robosc.run.runtime.core.layer import Layer
 from robosc.run.runtime.core.port import GoalOutcome
 from robosc.run.runtime.core.settings import SafeMessages, Settings
+from robosc.run.runtime.core.violations import Violations
 from robosc.synthesis import count, synthesize
 from robosc.tools.cli import main
 from robosc.tools.view.description import describe
 from tests.language.second_edition import errors, supervised
+from tests.m2t.conftest import ROS1_INTERFACES
 from tests.random_assumptions import assuming_robot
 from tests.run.node_tests.in_process_node import InProcessNode
 from tests.run.runtime.fake import FakePort, Record, World
@@ -449,7 +455,7 @@ def test_violation(tmp_path: Path) -> None:
     assert state["violated"] == ["A1"]
     assert state["components"]["M1"]["variables"] == {"last": False, "counted": True, "stored": 0.0}
     (status,) = [each for each in world.port.statuses[-1] if each.component == "M1"]
-    assert status.fails
+    assert status.level == "ERROR"
     assert "violated: A1" in status.message
     assert any("violates `assume A1" in text for text in world.port.said)
 
@@ -499,10 +505,37 @@ def test_response(tmp_path: Path) -> None:
     (call,) = world.port.calls
     call.answered(Record())
     world.wait(0.01)
+    assert len([text for text in world.port.said if "violates `assume A2" in text]) == 1
     assert log_of(world)[-2:] == [("violated", "service_work.u_response"), ("in", "service_work.u_error")]
     world.wait(0.1)
     assert state_of(world.port)["components"]["M1"]["state"] == "unread"
     assert state_of(world.port)["violated"] == ["A2"]
+
+
+def test_a_violation_leaves_nothing_but_its_assumptions() -> None:
+    """A node that goes on does not grow with each violation."""
+    model = model_of(SHOP)
+    violations = Violations(Engine(model), stop=False)
+    done = next(event for plant in model.plants for event in plant.events if event.eContainer().origin == "M1.done")
+
+    def sizes() -> dict[str, int]:
+        return {name: len(value) for name, value in vars(violations).items() if isinstance(value, (dict, list, set))}
+
+    fault = violations.check(done)
+    assert fault is not None
+    assert fault.assumptions == assumptions_of(model)[:1]
+    before = sizes()
+    assert violations.check(done) is not None
+    assert sizes() == before
+
+
+@pytest.mark.parametrize("target", ["ros1", "ros2", "ros2-layer"])
+def test_a_violating_response_is_reported_once(tmp_path: Path, target: str) -> None:
+    handler = body_of(generated(tmp_path, target), "void on_drive_response(")
+    violated = handler[handler.index("if (violates(") : handler.index("    } else {\n")]
+    assert "cart_action_drive_u_error" in violated
+    assert "WARN" not in violated
+    assert ("drive_fault_ = violation_;" in violated) == (target != "ros2-layer")
 
 
 def test_goal(tmp_path: Path) -> None:
@@ -535,10 +568,11 @@ def test_stop(tmp_path: Path) -> None:
     assert "/lamp" in sent
     world.hear("done", data=True)
     world.port.sent.clear()
+    assert any(text.startswith("commands are held back: the robot violated an assumption") for text in world.port.said)
     world.wait(2.0)
     assert world.port.sent == []
     assert ("outside", "message_safe.c_trigger") in log_of(world)
-    assert [each for each in world.port.statuses[-1] if each.fails]
+    assert [each for each in world.port.statuses[-1] if each.level == "ERROR"]
     (tmp_path / "cart").mkdir()
     cart = World(written(tmp_path / "cart", DRIVE), tmp_path / "cart.jsonl").start()
     cart.wait(0.3)
@@ -574,14 +608,59 @@ def test_warnings(tmp_path: Path, kind: str) -> None:
     assert '"onViolation" has no effect: the model has no assumption' in findings_of(other, kind, on_violation="stop")
 
 
+@pytest.mark.parametrize(
+    ("settings", "expected"),
+    [
+        ({}, [config.NO_STOP, config.NO_STOP_ON_VIOLATION]),
+        ({"on_shutdown": []}, [config.NO_STOP_ON_VIOLATION]),
+        ({"on_shutdown": ["velocity"]}, []),
+        ({"on_shutdown": [], "on_violation": "report"}, [config.REPORTS_VIOLATIONS]),
+    ],
+)
+def test_a_node_warns_that_a_violation_does_not_stop_the_robot(
+    tmp_path: Path, settings: dict[str, Any], expected: list[str]
+) -> None:
+    world = World(written(tmp_path, DRIVE), tmp_path / "log.jsonl", Configuration(**settings)).start()
+    assert world.port.said == expected
+    for target in ("ros1", "ros2"):
+        node = re.sub(r'"\n\s*"', "", generated(tmp_path, target, **settings))
+        body = node[node.index("void warn_of_no_stop()") :] if "void warn_of_no_stop()" in node else ""
+        body = body.partition("  }\n")[0]
+        assert [
+            text for text in (config.NO_STOP, config.NO_STOP_ON_VIOLATION, config.REPORTS_VIOLATIONS) if text in body
+        ] == expected
+        assert (config.NO_STOP_ON_VIOLATION in node) == (config.NO_STOP_ON_VIOLATION in expected)
+
+
+UNGUARDED = """robot Cart {
+  component Base {
+    incoming message velocity with identifier: "/velocity", type: geometry_msgs/Twist
+    outgoing message told with identifier: "/told", type: none
+    behaviour { initial marked state still { on response from told goto moving } marked state moving {} }
+  }
+  assume told needs Base.still
+}
+"""
+
+
+def test_a_layer_may_block_each_command_after_a_violation(tmp_path: Path) -> None:
+    """Nothing else can block the velocity."""
+    path = written(tmp_path, UNGUARDED)
+    (blocked,) = findings_of(path, "layer")
+    assert blocked.startswith("the layer can block velocity, also one that stops the robot")
+    assert findings_of(path, "layer", on_blocked=[]) == []
+    (reported,) = findings_of(path, "layer", on_violation="report")
+    assert reported.startswith('"onViolation": after the first violation')
+
+
 class Bench:
     """A layer of the cart whose goals are recorded."""
 
     trouble = ""
     waits = False
 
-    def __init__(self, folder: Path, on_blocked: Sequence[str] = ()) -> None:
-        self.graph = graph_of(written(folder, DRIVE))
+    def __init__(self, folder: Path, on_blocked: Sequence[str] = (), text: str = DRIVE) -> None:
+        self.graph = graph_of(written(folder, text))
         self.port = FakePort()
         configuration = Configuration()
         log = str(folder / "layer.jsonl")
@@ -601,19 +680,52 @@ class Bench:
     def leave(self) -> None:
         """Nothing runs at the end."""
 
+    def command(self, name: str) -> bool:
+        """Send a message of the controller; return whether it passes."""
+        sending = find_message(self.graph, name)
+        assert sending is not None
+        return self.layer.forwarded(sending, Record()) is not None
+
+    def open_door(self) -> None:
+        """Send `opened` from the robot, which violates A3 unless the base is parked."""
+        opened = next(each for each in self.graph.subscriptions if each.topic == "/opened")
+        self.layer.receive(opened, Record())  # the node behind it forwards the message itself
+
 
 def test_layer(tmp_path: Path) -> None:
     bench = Bench(tmp_path, ["velocity"])
-    (action,), velocity = bench.graph.actionClients, find_message(bench.graph, "velocity")
-    assert velocity is not None
+    (action,) = bench.graph.actionClients
+    assert bench.command("velocity")
     assert bench.layer.forwarded(action.request, Record()) is not None
-    opened = next(each for each in bench.graph.subscriptions if each.topic == "/opened")
-    bench.layer.receive(opened, Record())  # the node behind it forwards the message itself
+    bench.open_door()
     assert bench.cancels >= 1
     assert [topic for topic, _ in bench.port.sent] == ["/velocity"]
-    assert bench.layer.forwarded(velocity, Record()) is None
+    assert not bench.command("velocity")
+    assert not bench.command("velocity")
+    assert [topic for topic, _ in bench.port.sent] == ["/velocity"], "its own message is not sent again"
     blocked = json.loads([text for name, text in bench.port.told if name == "blocked"][-1])
     assert (blocked["reason"], blocked["because"]) == ("assumption", ["assume A3: opened needs Base.parked"])
+
+
+LIT = DRIVE.replace(
+    "  requirement velocity",
+    """  component Lamp {
+    incoming message lights with identifier: "/lights", type: none
+    incoming message horn with identifier: "/horn", type: none
+  }
+  requirement velocity""",
+)
+
+
+@pytest.mark.parametrize("names", [["velocity", "lights"], ["lights", "velocity"], ["horn", "velocity", "lights"]])
+def test_a_layer_sends_its_messages_in_the_configured_order(tmp_path: Path, names: list[str]) -> None:
+    bench = Bench(tmp_path, names, LIT)
+    (action,) = bench.graph.actionClients
+    assert bench.layer.forwarded(action.request, Record()) is not None
+    bench.open_door()
+    assert [topic for topic, _ in bench.port.sent] == [f"/{name}" for name in names]
+    node = generated(tmp_path, "ros2-layer", text=LIT, on_blocked=names)
+    assert re.findall(r"    send_(\w+)\(\);", body_of(node, "void halt()")) == names
 
 
 # Tools
@@ -786,11 +898,64 @@ def test_a_saved_assumption_that_does_not_fit(tmp_path: Path) -> None:
         validity.load(path)
 
 
-def generated(folder: Path, target: str, **settings: Any) -> str:
+def generated(folder: Path, target: str, text: str = DRIVE, **settings: Any) -> str:
     """Return the source of a node of the cart."""
-    graph = graph_of(written(folder, DRIVE))
-    files = robosc.generate(target, Models(graph.model, graph), Configuration(**settings))
+    graph = graph_of(written(folder, text))
+    models = Models(graph.model, graph, ros_types=RosTypes([ROS1_INTERFACES]))
+    files = robosc.generate(target, models, Configuration(**settings))
     return next(text for path, text in files.items() if path.endswith("_node.cpp"))
+
+
+def test_an_assumption_without_a_text_is_violated_like_any_other(tmp_path: Path) -> None:
+    graph = graph_of(written(tmp_path, DRIVE))
+    plants = assumptions_of(graph.model)
+    for plant in plants:
+        plant.text = plant.origin = None
+    files = robosc.generate("ros2", Models(graph.model, graph), Configuration())
+    names = [f'"{plant.name}"' for plant in plants]
+    assert files["src/cart_supervisor.c"].count(",\n        ".join(names)) == 2, "as names and as texts"
+    assert "if (!violated) return false;" in files["src/cart_controller_node.cpp"]
+    engine = Engine(graph.model)
+    assert engine.perform("action_drive.c_trigger")
+    violation = Violations(engine, stop=True).check(graph.subscriptions[0].receptions[0].event)
+    assert str(violation) == f"violates `{plants[0].name}`"
+
+
+def body_of(node: str, function: str) -> str:
+    """Return a method of a generated node, from its name on."""
+    return node[node.index(f"  {function}") :].partition("\n  }\n")[0]
+
+
+def test_the_definition_lists_them() -> None:
+    robot = robosc.load(text=SHOP)
+    graph = robosc.to_rosgraph(robot)
+    told = json.loads(definition_text(graph))
+    Draft202012Validator(json.loads(locate("schemas/definition.schema.json").read_text())).validate(told)
+    names = {"A1": "message_done.u_response", "A2": "service_work.u_response"}
+    assert {each["name"]: each["events"] for each in told["assumptions"]} == {
+        name: [event] for name, event in names.items()
+    }
+    assert [each["text"] for each in told["assumptions"]] == [plant.text for plant in assumptions_of(graph.model)]
+    assert {each["kind"] for each in told["communications"]} == {"message", "service"}
+    assert "assumptions" not in json.loads(
+        definition_text(robosc.to_rosgraph(robosc.load(text=re.sub(r"  assume .*\n", "", SHOP))))
+    )
+
+
+@pytest.mark.parametrize("target", ["ros1", "ros2", "ros2-layer"])
+def test_the_typed_state_has_the_violated_ones(tmp_path: Path, target: str) -> None:
+    graph = graph_of(written(tmp_path, DRIVE))
+    typed = Configuration(typed_state=True)
+    (message,) = [
+        text
+        for path, text in TARGETS[target].beside(Models(graph.model, graph), typed).items()
+        if path.endswith("State.msg")
+    ]
+    assert message.endswith(
+        "# The assumptions that the robot has violated, by name or else by text.\nstring[] violated\n"
+    )
+    node = generated(tmp_path, target, typed_state=True)
+    assert "    report.violated = violations_.names();\n" in node
 
 
 @pytest.mark.parametrize("target", ["ros1", "ros2", "ros2-layer"])
@@ -799,19 +964,38 @@ def test_generated_nodes(tmp_path: Path, target: str) -> None:
     assert 'if (violates(cart_message_opened_u_response, "Door")) {' in stopping
     assert stopping.count("stop_if_violated();") > 3
     assert 'log_.write(seconds(), "violated", cart_event_name(cart_action_drive_u_response));' in stopping
-    assert ("violations_.empty() && " in stopping) == (target == "ros2-layer")
+    halting = body_of(stopping, "void halt()")
+    assert "_cancel" in halting
+    if target == "ros2-layer":
+        assert "    if (violations_.empty() && cart_perform(" in body_of(stopping, "bool pass_velocity()")
+        assert "    velocity_forwarded_ = false;\n    send_velocity();" in halting
+    else:
+        assert "const {\n    if (!violations_.empty()) return true;\n" in body_of(stopping, "bool held()")
+        handler = body_of(stopping, "void on_opened(")
+        refused, _, accepted = handler.partition("    } else {\n")
+        assert "      read_whole = false;\n" in refused
+        assert "    if (read_whole && opened_watchdog_->hear())" in accepted
+        assert "velocity_publisher_" in halting
     reporting = generated(tmp_path, target, on_violation="report")
     assert "violates(" in reporting
     assert "stop_if_violated" not in reporting
+    assert "violations_.empty()" not in reporting
     assert "onViolation is report" in reporting
 
 
 def test_a_managed_node_begins_anew(tmp_path: Path) -> None:
-    """Its activation ends the stop."""
+    """Its deactivation ends the stop. A violation while it is inactive stops the robot at its activation."""
     text = generated(tmp_path, "ros2", lifecycle=True)
-    activation = text[text.index("void activate()") : text.index("void deactivate()")]
-    assert "violations_ = Violations<cart_event>();" in activation
-    assert "if (!active_ || !violations_.must_halt()) return;" in text
+    activation, deactivation, cleanup = (
+        body_of(text, f"void {name}()") for name in ("activate", "deactivate", "disconnect")
+    )
+    forgets = "    violations_ = Violations<cart_event>();\n"
+    assert forgets not in activation
+    assert activation.endswith("    stop_if_violated();")
+    assert activation.index("active_ = true;") < activation.index("stop_if_violated();")
+    assert deactivation.index("halt();") < deactivation.index(forgets)
+    assert forgets in cleanup
+    assert "if (!active_ || !violations_.take_halt()) return;" in text
 
 
 @pytest.mark.parametrize("text", [SHOP, DRIVE], ids=["shop", "cart"])

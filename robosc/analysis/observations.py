@@ -12,7 +12,7 @@ from robosc.analysis.blocking import BlockingCounterexample, blocking_counterexa
 from robosc.analysis.paths import Layers, Path
 from robosc.model import sct
 from robosc.model.semantics.communication import RUNNING
-from robosc.model.semantics.roles import plant_of, provide_numbers
+from robosc.model.semantics.roles import assumptions, plant_of, provide_numbers
 from robosc.synthesis.decoding import Value, value
 from robosc.synthesis.encoding import pick
 
@@ -433,11 +433,10 @@ class Observer:
 
     def _unused_assumptions(self) -> Iterator[sct.Plant]:
         system = self._system
-        for assumption in system.model.plants:
-            if assumption.kind == sct.PlantKind.assumption:
-                events = dict.fromkeys(edge.event for location in assumption.locations for edge in location.edges)
-                if not any(self._could_violate(system.relations[event], assumption).satisfiable() for event in events):
-                    yield assumption
+        for assumption in assumptions(system.model):
+            events = dict.fromkeys(edge.event for location in assumption.locations for edge in location.edges)
+            if not any(self._could_violate(system.relations[event], assumption).satisfiable() for event in events):
+                yield assumption
 
     def _could_violate(self, relation: EventRelation, assumption: sct.Plant) -> Diagram:
         """Return the controlled states in which all plants but the assumption allow an event."""

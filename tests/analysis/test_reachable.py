@@ -33,7 +33,7 @@ from robosc.m2t.models import Models
 from robosc.model import expression as ex
 from robosc.model import sct
 from robosc.model.semantics.walks import copy_tree
-from robosc.synthesis import synthesize, use_encoding
+from robosc.synthesis import count, synthesize, use_encoding
 from robosc.synthesis.encoding import Encoding
 from robosc.tools.cli import main
 from tests.analysis.verify.explicit import Explicit
@@ -147,6 +147,26 @@ def test_the_supervisor_keeps_the_states_reachable(requirement: str, left: int) 
     supervise(model)
     possible = {guard.event.eContainer().origin for guard in model.supervisor.guards if guard.everEnabled}
     assert ("Base.venture" in possible) == (left == 6)
+
+
+def test_states_without_a_goal_are_removed_until_none_is_left() -> None:
+    """Without `b`, which never reaches `g`, the robot does not reach a marked state from `a`."""
+    text = """robot R { component C {
+        incoming message go with type: none
+        incoming message up with type: none
+        incoming message hi with type: none
+        behaviour {
+            initial state a { on request to go goto b }
+            state b { on request to up goto m }
+            marked state m {}
+            state g { on request to hi goto g }
+        }
+        requirement R1: reachable C.g from C.b
+    } }"""
+    model = robosc.to_sct(robosc.load(text=text))
+    assert states(model) == count(model).controlled_states == 0
+    with pytest.raises(EmptySupervisorError, match="the supervisor is empty"):
+        supervise(model)
 
 
 def test_some_values_of_inputs_suffice() -> None:

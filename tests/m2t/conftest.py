@@ -10,12 +10,15 @@ from typing import TYPE_CHECKING
 import pytest
 
 import robosc
+from robosc.base.ros_types import RosTypes
 from robosc.language import configuration as config
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
 HERE = Path(__file__).parent / "cpp"
+#: Packages for ROS 1 that only ROS 2 has otherwise.
+ROS1_INTERFACES = Path(__file__).parents[1] / "ros" / "interfaces" / "ros1"
 SHIPPED = Path(robosc.__file__).parent / "m2t" / "ros" / "include"
 
 
@@ -24,7 +27,7 @@ def models(name: str) -> robosc.Models:
     assert [finding for finding in robosc.check(robot) if finding.rule != "interface-unknown"] == []
     model = robosc.to_sct(robot)
     robosc.synthesize(model)
-    return robosc.Models(model, robosc.to_rosgraph(robot), robot)
+    return robosc.Models(model, robosc.to_rosgraph(robot), robot, RosTypes([ROS1_INTERFACES]))
 
 
 @pytest.fixture(scope="session")

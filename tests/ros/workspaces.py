@@ -243,7 +243,11 @@ def _transform(package: Package, out: Path) -> list[str]:
     settings = ["--config", str(package.configuration)] if package.configuration else []
     settings += ["--with-tests"] if package.with_tests else []
     settings += ["--typed-state"] if package.typed else []
-    settings += ["--interface-path", str(HERE / "interfaces" / package.target[:4])] if package.own_types else []
+    interfaces = HERE / "interfaces" / package.target[:4]
+    if package.target == "ros1" and not package.own_types:
+        interfaces /= "nav2_msgs"  # which ROS 1 itself does not have
+    if package.target == "ros1" or package.own_types:
+        settings += ["--interface-path", str(interfaces)]
     return ["transform", str(package.model), "-o", str(out), "--to", package.target, *settings]
 
 

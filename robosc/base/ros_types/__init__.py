@@ -35,6 +35,20 @@ OWN_OBJECT = "for the data of a service or action, declare an object with the fi
 _DATA = "data"
 #: Shipped definitions. Types that are the same in both ROS versions are in the folder `both`.
 _SHIPPED = locate("base/ros_types/definitions")
+#: Known packages that ROS 1 does not have. An unknown one, such as `tf2_msgs`, may still exist there.
+_NOT_IN_ROS_1 = frozenset(
+    [
+        "action_msgs",
+        "example_interfaces",
+        "lifecycle_msgs",
+        "nav2_msgs",
+        "rcl_interfaces",
+        "service_msgs",
+        "statistics_msgs",
+        "type_description_interfaces",
+        "unique_identifier_msgs",
+    ]
+)
 _SHIPPED_FOLDERS = {"ROS 2": ("ros2", "both"), "ROS 1": ("ros1", "both")}
 
 
@@ -111,6 +125,14 @@ class RosDistribution:
                 {name for source in self._sources_of(package) for name in source.names(package, kind)}
             )
         return self._named[key]
+
+    def lacks_package(self, package: str) -> bool:
+        """Return whether a package exists in the other ROS version only."""
+        return self.name == "ROS 1" and package in _NOT_IN_ROS_1 and not self.has_package(package)
+
+    def has_package(self, package: str) -> bool:
+        """Return whether a type of a package is known."""
+        return any(self.names(package, kind) for kind in FOLDERS)
 
     def packages(self) -> set[str]:
         """Return the names of all packages with a known type."""
@@ -203,7 +225,7 @@ class RosTypes:
             if other.kind != kind and any(known.defines(package, name, other) for known in self.distributions):
                 message = f"{package}/{name} is of kind {other.kind}, expected a type of kind {kind}"
                 return message, f"name a type of kind {kind}", None
-        if not any(known.names(package, other) for known in self.distributions for other in FOLDERS):
+        if not any(known.has_package(package) for known in self.distributions):
             packages = {package_name for known in self.distributions for package_name in known.packages()}
             having = sorted(other for other in packages if name in self._names(other, kind))
             close = get_close_matches(package, having, n=1, cutoff=0.8)

@@ -15,17 +15,24 @@ from robosc.base.diagnostics import Diagnostic, ModelError, Severity, Span
 from robosc.base.files import reading as files
 from robosc.base.files.json_reading import JsonError, json_value
 from robosc.model.semantics.naming import controller_name, layer_name, output_name, snake_case
+from robosc.model.semantics.roles import assumptions
 
 if TYPE_CHECKING:
     from robosc.model.expression import NamedElement
+    from robosc.model.sct import SupervisoryControlModel
 
 FILE_NAME = "controller-config.json"
 RULE = "configuration"
-#: Warnings of a node at its start that nothing stops its robot: when the node ends, and when a topic falls silent.
+#: Warnings of a node at its start that nothing stops its robot: when the node ends, when a topic falls silent, and when
+#: the robot violates an assumption.
 NO_STOP = "onShutdown names no message: when this node ends, the robot continues with its last command"
 NO_STOP_ON_SILENCE = (
     "watchdog_stops holds commands back and does not stop the robot: onShutdown names no message, the robot continues"
     " with its last command"
+)
+NO_STOP_ON_VIOLATION = (
+    "a violation of an assumption holds commands back and does not stop the robot: onShutdown names no message, the"
+    " robot continues with its last command"
 )
 #: Warning of a node at its start that goes on after a violation.
 REPORTS_VIOLATIONS = (
@@ -225,7 +232,7 @@ class Configuration(_Settings):
     on_violation: Literal["stop", "report"] = Field(
         default="stop",
         description="Reaction to an event from the robot that violates an assumption. stop: hold commands back, cancel"
-        " actions and send onShutdown, until the node is started again. report: go on.",
+        " actions and send onShutdown, a layer onBlocked, until the node is started again. report: go on.",
     )
     lifecycle: bool = Field(default=False, description="Whether the ROS 2 node is a managed (lifecycle) node.")
     package: Package = Package()
@@ -264,6 +271,10 @@ class Configuration(_Settings):
     def says_how_to_stop(self) -> bool:
         """Whether the user has decided on the messages at the node's end, possibly none."""
         return "on_shutdown" in self.model_fields_set
+
+    def stops_on_violation(self, model: "SupervisoryControlModel") -> bool:
+        """Return whether the first violation of an assumption of the model stops the robot."""
+        return self.on_violation == "stop" and bool(assumptions(model))
 
     @property
     def watchdog_meaning(self) -> str:

@@ -249,9 +249,14 @@ _CHOOSING = {"abs": ex.LessThan, "min": ex.LessThan, "max": ex.GreaterThan}
 
 
 def _called(call: ex.FunctionCall, first: _Pieces, last: _Pieces) -> _Pieces:
-    """Lower a function of its first and its last argument. All but `mod` choose between values."""
+    """Lower a function of its first and its last argument. All but `mod` choose between values.
+
+    Raises ValueError for a function that no sct model has.
+    """
     if call.function == "mod":
         return _modulo(call, first, last[0][1].constant)
+    if call.function not in _CHOOSING:
+        raise ValueError(f"no lowering for `{call.function}`")
     if call.function == "abs":
         other, difference = _scaled(first, -1), first
     else:  # Put the shorter one first: its alternatives repeat the condition.

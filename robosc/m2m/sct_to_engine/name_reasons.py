@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from robosc.m2m.sct_to_engine.build_expressions import build_expression
 from robosc.model import engine, sct
+from robosc.model.semantics.roles import assumption_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -48,7 +49,7 @@ def _of_assumptions(possible: Mapping[sct.Plant, Term], lower: Lowering) -> Iter
     """Return a reason for each assumption that an event can violate."""
     for plant, holds in possible.items():
         if plant.kind == sct.PlantKind.assumption and holds.constant != 1:
-            reason = _reason(engine.Origin.assumption, lower.terms.opposite(holds), plant.text or "an assumption")
+            reason = _reason(engine.Origin.assumption, lower.terms.opposite(holds), assumption_text(plant))
             reason.assumption = plant
             yield reason
 

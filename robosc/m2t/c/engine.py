@@ -14,7 +14,7 @@ from robosc.model import engine, sct
 from robosc.model import expression as ex
 from robosc.model.reflection import tree
 from robosc.model.semantics.durations import duration_text
-from robosc.model.semantics.roles import assumption_name, is_from_cif
+from robosc.model.semantics.roles import assumption_name, assumption_text, assumptions, is_from_cif
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -188,7 +188,7 @@ class _Preparation:
 
     def _assumptions(self) -> dict[str, Any]:
         """Return the assumptions, and the conditions under which an event violates each of them."""
-        plants = [plant for plant in self._model.model.plants if plant.kind == sct.PlantKind.assumption]
+        plants = assumptions(self._model.model)
         number = {plant: position for position, plant in enumerate(plants)}
         cases = []
         for event in self._model.events:
@@ -202,10 +202,7 @@ class _Preparation:
                 cases.append({"event": self._enumerator(event), "possible": possible, "reasons": reasons})
         return {
             "assumptions": [
-                {
-                    "name": string_literal(assumption_name(plant)),
-                    "text": string_literal(plant.text or ""),
-                }
+                {"name": string_literal(assumption_name(plant)), "text": string_literal(assumption_text(plant))}
                 for plant in plants
             ],
             "violations": cases,

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from robosc.model import engine, sct
 from robosc.model.semantics.naming import Names, snake_case
+from robosc.model.semantics.roles import assumptions
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -72,8 +73,7 @@ class CNames:
         }
 
     def _name_globals(self, model: sct.SupervisoryControlModel) -> None:
-        assumes = any(plant.kind == sct.PlantKind.assumption for plant in model.plants)
-        api = f"{_API} {_ASSUMPTIONS}" if assumes else _API
+        api = f"{_API} {_ASSUMPTIONS}" if assumptions(model) else _API
         names = Names(f"{self.prefix}_{name}" for name in api.split())
         owners: list[tuple[str, ex.NamedElement, Sequence[ex.NamedElement]]] = [
             *(("location_name", plant, [*plant.events, *plant.locations]) for plant in model.plants),

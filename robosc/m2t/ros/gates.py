@@ -40,7 +40,7 @@ class Gate:
     """A command to the robot that the supervisor passes or blocks.
 
     `word` is valid in names, `event` is the event's enumerator, `name` its communication in the model, `requirements`
-    are the texts of the requirements on it. Without reasons, nothing can block it.
+    are the texts of the requirements on it. Without reasons, only a violation of an assumption can block it.
     """
 
     word: str

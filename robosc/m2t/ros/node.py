@@ -33,7 +33,7 @@ from robosc.model.semantics.messages import (
 )
 from robosc.model.semantics.naming import Names
 from robosc.model.semantics.operators import PRECEDENCE
-from robosc.model.semantics.roles import component_name
+from robosc.model.semantics.roles import assumptions, component_name
 from robosc.model.semantics.typing import DOUBLE, ArrayType, infer
 from robosc.model.semantics.walks import parts
 
@@ -351,8 +351,8 @@ class GeneratedNode:
 
     @property
     def assumed(self) -> bool:
-        """Whether an event from the robot may violate an assumption."""
-        return any(reason.assumption is not None for event in self._events.values() for reason in event.reasons)
+        """Whether the model has assumptions."""
+        return bool(assumptions(self._graph.model))
 
     @property
     def may_withhold(self) -> bool:

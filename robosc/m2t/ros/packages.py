@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Literal, Protocol
 
 from robosc.base.files.resources import locate
-from robosc.language.configuration import NO_STOP, NO_STOP_ON_SILENCE, REPORTS_VIOLATIONS
+from robosc.language.configuration import NO_STOP, NO_STOP_ON_SILENCE, NO_STOP_ON_VIOLATION, REPORTS_VIOLATIONS
 from robosc.language.configuration.parameters import controller_parameters, layer_parameters
 from robosc.m2t.c import engine
 from robosc.m2t.ros import preconditions, typed_state
@@ -192,6 +192,7 @@ class RosTarget:
             **({definition: "definition.hpp.j2"} if configuration.publish_state_information else {}),
             **(_test_files(ros, name, into) if tests else {}),
         }
+        stops_on_violation = configuration.stops_on_violation(graph.model)
         reports_blocked = bool(layer.gates if layer else node.decided)
         texts_told = configuration.publish_state_information or reports_blocked
         typed = typed_state.fields(graph, CppNames(graph)) if configuration.typed_state else []
@@ -238,8 +239,9 @@ class RosTarget:
             reports_blocked=reports_blocked,
             writes_log=configuration.write_events_to_log,
             definition=definition_text(graph),
-            no_stop=_no_stop(node, configuration),
-            stops_on_violation=node.assumed and configuration.on_violation == "stop",
+            no_stop=_no_stop(node, configuration, stops_on_violation=stops_on_violation),
+            reports_violations=REPORTS_VIOLATIONS if node.assumed and not stops_on_violation else "",
+            stops_on_violation=stops_on_violation,
             awaited=_awaited(node, configuration) if kind == "controller" else [],
             turned=_turned(node) if ros.version == 1 else [],
             has_defaults=has_defaults,
@@ -376,12 +378,11 @@ def launch_path(configuration: Configuration) -> str:
     return launch.file if "/" in launch.file else f"launch/{launch.file}"
 
 
-def _no_stop(node: GeneratedNode, configuration: Configuration) -> list[tuple[str, str]]:
-    """Return the warnings at the node's start that nothing stops the robot, or no violation, with their conditions."""
-    reports = [("", REPORTS_VIOLATIONS)] if node.assumed and configuration.on_violation == "report" else []
+def _no_stop(node: GeneratedNode, configuration: Configuration, *, stops_on_violation: bool) -> list[tuple[str, str]]:
+    """Return the warnings at the node's start that nothing stops the robot, with their conditions."""
     if node.shutdown or not node.publishers:
-        return reports
+        return []
     silence = [("watchdog_stops_", NO_STOP_ON_SILENCE)] if node.subscriptions else []
-    if configuration.says_how_to_stop:
-        return [*silence, *reports]
-    return [*silence, ("!watchdog_stops_" if silence else "", NO_STOP), *reports]
+    end = [] if configuration.says_how_to_stop else [("!watchdog_stops_" if silence else "", NO_STOP)]
+    violation = [("", NO_STOP_ON_VIOLATION)] if stops_on_violation else []
+    return [*silence, *end, *violation]

@@ -8,14 +8,16 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from robosc.base.diagnostics import START, Diagnostic, Severity
+from robosc.base.ros_types import RosTypes
 from robosc.language.configuration import Configuration
 from robosc.language.configuration.parameters import controller_parameters, layer_parameters, model_parameters
 from robosc.m2t.c.preconditions import preconditions as engine_preconditions
 from robosc.model import expression as ex
-from robosc.model import rosgraph, sct
+from robosc.model import rosgraph
 from robosc.model.places import place
 from robosc.model.reflection import tree
 from robosc.model.semantics.messages import fields_set, find_message, holds_objects, parts_of, path_of, source_of
+from robosc.model.semantics.roles import assumptions
 from robosc.model.semantics.typing import DOUBLE, ArrayType, declared_type, infer
 
 if TYPE_CHECKING:
@@ -59,6 +61,7 @@ def preconditions(models: Models, configuration: Configuration, kind: str, ros: 
         message = "this model has no ROS graph: generate from the .rscd or the .rosgraph.xmi"
         return [Diagnostic(models.sct.name, START, Severity.ERROR, RULE, message)]
     findings = [*engine_preconditions(models.sct), *_names(graph), *_types(graph)]
+    findings += _packages(graph, models.ros_types or RosTypes(), ros)
     findings += _parameters(graph, configuration, kind, ros)
     if configuration.typed_state and not configuration.publish_state_information:
         hint = 'leave out "publishStateInformation": false'
@@ -114,6 +117,20 @@ def _names(graph: rosgraph.RosGraph) -> Iterator[Diagnostic]:
     for element, name in _fields(graph):
         if not _FIELD.fullmatch(name):
             yield _error(element, f'"{name}" is not a name of a field in ROS')
+
+
+def _packages(graph: rosgraph.RosGraph, ros_types: RosTypes, ros: int) -> Iterator[Diagnostic]:
+    """Return errors on types of packages that only the other ROS version has: the node could not be built."""
+    distribution, other = ros_types.distribution(ros), ros_types.distribution(3 - ros)
+    for interface in graph.interfaces:
+        package = interface.package
+        if distribution.lacks_package(package):
+            message = f"{distribution.name} has no package {package}, only {other.name} has it"
+            hint = (
+                f"generate for {other.name}; if you have a {package} for {distribution.name}, add its folder with"
+                " --interface-path or ROBOSC_INTERFACE_PATH"
+            )
+            yield _error(interface, message, hint)
 
 
 def _parameters(graph: rosgraph.RosGraph, configuration: Configuration, kind: str, ros: int) -> Iterator[Diagnostic]:
@@ -179,7 +196,7 @@ def _settings(graph: rosgraph.RosGraph, configuration: Configuration) -> Iterato
 
 def _violations(graph: rosgraph.RosGraph, configuration: Configuration) -> Iterator[Diagnostic]:
     """Return warnings on a node that goes on after a violation, and on a reaction to violations that cannot occur."""
-    if not any(plant.kind == sct.PlantKind.assumption for plant in graph.model.plants):
+    if not assumptions(graph.model):
         if "on_violation" in configuration.model_fields_set:
             message = '"onViolation" has no effect: the model has no assumption'
             yield configuration.warning(("onViolation",), message)
@@ -221,7 +238,8 @@ def _swallowed(
     """Return warnings on messages that keep the robot moving and that a layer may block without notice to the robot."""
     if "on_blocked" in configuration.model_fields_set:
         return
-    blockable = {event.event for event in executed.events if event.reasons}
+    stops = configuration.stops_on_violation(graph.model)
+    blockable = {event.event for event in executed.events if stops or event.reasons}
     for publisher in graph.publishers:
         kind = f"{publisher.interface.package}/{publisher.interface.type}"
         for sending in publisher.sendings:
@@ -250,6 +268,11 @@ def _nothing_safe(graph: rosgraph.RosGraph, configuration: Configuration) -> Ite
         message = '"onShutdown" is not set: when the node ends, the robot continues with its last command'
         hint = 'name the message that stops it, as in "onShutdown": ["halt"]; if no message can, write []'
         yield configuration.warning(("onShutdown",), message, hint)
+    if configuration.stops_on_violation(graph.model) and not configuration.on_shutdown:
+        message = (
+            'a violation of an assumption only holds commands back: "onShutdown" names no message that stops the robot'
+        )
+        yield configuration.warning(("onShutdown",), message, 'name the message that stops it: "onShutdown": ["halt"]')
     if "on_withheld" not in configuration.model_fields_set:
         outside = _from_outside(graph)
         for sending in (sending for publisher in graph.publishers for sending in publisher.sendings):

@@ -16,6 +16,7 @@ from robosc.model import expression as ex
 from robosc.model import rosgraph, sct
 from robosc.model.semantics.component_parts import components
 from robosc.model.semantics.naming import snake_case
+from robosc.model.semantics.roles import assumptions
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -48,7 +49,10 @@ class Field:
 
 
 def fields(graph: rosgraph.RosGraph, names: CppNames) -> list[Field]:
-    """Return the fields of a robot's state: the state and the variables of each component with behaviour."""
+    """Return the fields of a robot's state: the state and the variables of each component with behaviour.
+
+    A robot with assumptions has a field for those that it has violated.
+    """
     return list(_Maker(names).fields(graph))
 
 
@@ -68,6 +72,9 @@ class _Maker:
             for variable in variables:
                 own = self._fields.fresh(f"{name}_{snake_case(variable.name)}")
                 yield self._variable(variable, f"{parts.name}.{variable.name}", own)
+        if assumptions(graph.model):
+            about = "The assumptions that the robot has violated, by name or else by text."
+            yield Field(about, "string[]", self._fields.fresh("violated"), [], "violations_.names()")
 
     def _state(self, plant: sct.Plant, about: str, name: str) -> Field:
         several = len(plant.locations) > 1

@@ -26,6 +26,7 @@ class NodeValues:
     `ros_package` is the package that contains the node: its own, or the user's. `included` are headers in `include`.
     `parameter_groups` are the parameters of the parameters file. `typed` is the type of the typed state, None without
     one, and `typed_fields` are its fields. `remembers` is whether the node records which commands are withheld.
+    `reports_violations` is the warning of a node that goes on after a violation, empty for other nodes.
     `no_stop` and `turned` are the results of `packages`' functions of these names. `has_defaults` is a function of an
     interface, `frame` one of a topic.
     """
@@ -55,6 +56,7 @@ class NodeValues:
     writes_log: bool
     definition: str
     no_stop: Sequence[tuple[str, str]]
+    reports_violations: str
     stops_on_violation: bool
     awaited: Sequence[str]
     turned: Sequence[tuple[Variable, str]]

@@ -8,28 +8,38 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from robosc.model import expression as ex
 from robosc.model import rosgraph, sct
 from robosc.model.semantics.durations import timer_text
-from robosc.model.semantics.edges import edges_from
+from robosc.model.semantics.edges import edges_from, edges_of
 from robosc.model.semantics.messages import is_structured
 from robosc.model.semantics.printing import RobotPrinter
-from robosc.model.semantics.roles import event_name
+from robosc.model.semantics.roles import assumption_name, assumption_text, assumptions, event_name
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Set
 
 _Value = TypeVar("_Value")
 
+#: Kinds of plants of communications.
+_COMMUNICATIONS = (sct.PlantKind.message, sct.PlantKind.service, sct.PlantKind.action)
 #: Maximum number of recent events in a report on `~/state`. While simulated time is stopped, no report is due for long.
 TRANSITIONS_KEPT = 5000
 
 
 def definition(graph: rosgraph.RosGraph) -> dict[str, Any]:
-    """Return the definition as JSON data: components, communication, requirements.
+    """Return the definition as JSON data: components, communication, requirements, and assumptions if there are any.
 
     A component has states, variables and transitions.
     """
     plants = graph.model.plants
     stored = reported_variables(graph)
     assigning = {(reaction.event, location) for reaction in graph.reactions for location in reaction.locations}
+    assumed = [
+        {
+            "name": assumption_name(plant),
+            "events": [event_name(event) for event in dict.fromkeys(edge.event for edge in edges_of(plant))],
+            "text": assumption_text(plant),
+        }
+        for plant in assumptions(graph.model)
+    ]
     return {
         "robot": graph.name,
         "components": [
@@ -45,7 +55,7 @@ def definition(graph: rosgraph.RosGraph) -> dict[str, Any]:
                 "events": [event_name(event) for event in plant.events],
             }
             for plant in plants
-            if plant.kind not in (sct.PlantKind.behaviour, sct.PlantKind.data, sct.PlantKind.requirement)
+            if plant.kind in _COMMUNICATIONS
         ],
         "requirements": [
             {"event": event_name(requirement.event), "text": requirement.text}
@@ -53,6 +63,7 @@ def definition(graph: rosgraph.RosGraph) -> dict[str, Any]:
             if requirement.text
         ]
         + [{"text": own.text} for own in [*graph.model.invariants, *graph.model.reachabilityRequirements] if own.text],
+        **({"assumptions": assumed} if assumed else {}),
     }
 
 

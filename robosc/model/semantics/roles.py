@@ -68,9 +68,19 @@ def component_name(event: sct.Event) -> str:
     return (plant_of(event).origin or "").rpartition(".")[0]
 
 
+def assumptions(model: sct.SupervisoryControlModel) -> list[sct.Plant]:
+    """Return the assumptions of a model."""
+    return [plant for plant in model.plants if plant.kind == sct.PlantKind.assumption]
+
+
 def assumption_name(assumption: sct.Plant) -> str:
     """Return the name of an assumption; its text if it has none."""
-    return assumption.origin or assumption.text or assumption.name
+    return assumption.origin or assumption_text(assumption)
+
+
+def assumption_text(assumption: sct.Plant) -> str:
+    """Return the text of an assumption; the name of its plant if it has none."""
+    return assumption.text or assumption.name
 
 
 def provide_number(event: sct.Event) -> int:

@@ -13,7 +13,7 @@ from robosc.model import sct
 from robosc.model.places import place
 from robosc.model.semantics.durations import timer_text
 from robosc.model.semantics.printing import RobotPrinter
-from robosc.model.semantics.roles import event_name, plant_of
+from robosc.model.semantics.roles import assumption_text, assumptions, event_name, plant_of
 from robosc.model.semantics.walks import copy_tree
 from robosc.run.node_tests.trace_test import trace_test_of
 from robosc.run.report import digests, printing
@@ -186,7 +186,6 @@ def _guarded(
 def _assumptions(models: Models, configuration: Configuration) -> dict[str, Any]:
     model, graph = models.sct, models.rosgraph
     events = [event for plant in model.plants for event in plant.events]
-    checked = [plant for plant in model.plants if plant.kind == sct.PlantKind.assumption]
     overridden = _overridden(model, graph, configuration.on_shutdown)
     return {
         "uncontrollable": [event_name(event) for event in events if not event.controllable],
@@ -201,7 +200,7 @@ def _assumptions(models: Models, configuration: Configuration) -> dict[str, Any]
             for plant in model.plants
             if len(plant.locations) > 1 and plant.kind != sct.PlantKind.data
         ],
-        "stated": [{"text": plant.text or plant.name, "line": place(plant)[1].line} for plant in checked],
+        "stated": [{"text": assumption_text(plant), "line": place(plant)[1].line} for plant in assumptions(model)],
         "on_violation": configuration.on_violation,
         "watchdogs": [
             {"topic": topic, "milliseconds": milliseconds}

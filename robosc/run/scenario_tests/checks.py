@@ -11,7 +11,7 @@ from robosc.base.ros_types.unknown_fields import unknown_field
 from robosc.engine import Engine
 from robosc.model import sct
 from robosc.model.semantics.failures import brings_data, possible_reasons
-from robosc.model.semantics.roles import event_name, plant_of
+from robosc.model.semantics.roles import assumptions, event_name, plant_of
 from robosc.run.scenario_tests.reading import Every, IncomingEvent, Permission, Refusal, SentCommand, Stop, Violation
 from robosc.run.simulation.data import DataError, EventData
 
@@ -74,10 +74,10 @@ def _about_data(graph: rosgraph.RosGraph, checked: EventData, line: IncomingEven
 
 def _about_events(model: sct.SupervisoryControlModel, scenario: Scenario) -> Iterator[Diagnostic]:
     repeated: set[sct.Event] = set()
-    assumptions = [plant.origin for plant in model.plants if plant.kind == sct.PlantKind.assumption and plant.origin]
+    known = [plant.origin for plant in assumptions(model) if plant.origin]
     for line in scenario.lines:
-        if isinstance(line, Violation) and line.assumption not in assumptions:
-            hint = f"expected {join_with_and(assumptions)}" if assumptions else "give the assumption a name"
+        if isinstance(line, Violation) and line.assumption not in known:
+            hint = f"expected {join_with_and(known)}" if known else "give the assumption a name"
             yield line.fault(f"the robot has no assumption `{line.assumption}`", hint)
         named = line.step if isinstance(line, Every) else line
         if not isinstance(named, (IncomingEvent, Refusal, Permission, SentCommand, Stop)):

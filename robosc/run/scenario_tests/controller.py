@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from robosc.model.semantics.roles import assumption_name
 from robosc.run.node_tests.drive import DrivenController
+from robosc.run.runtime.core.violations import ViolationError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from robosc.base.ros_types import Section
     from robosc.model import rosgraph, sct
+    from robosc.model.semantics.operators import UnreadableError
     from robosc.run.runtime.core.json_text import Json
+    from robosc.run.runtime.core.port import Message
     from robosc.run.scenario_tests.operations import Operations
 
 
@@ -28,10 +33,10 @@ class ScenarioController(DrivenController):
         sender = self._senders[event]
         return sender.interface, sender.section
 
-    @property
+    @cached_property
     def violations(self) -> list[str]:
         """The names of the violated assumptions, once for each violation."""
-        return self._violations.names
+        return []
 
     def note(self, operations: Operations) -> None:
         """Record the calls of the control loop from now on."""
@@ -48,6 +53,18 @@ class ScenarioController(DrivenController):
         if event in self._senders:
             self.messages[self._lines_so_far()] = self._senders[event].message
         return acted
+
+    def _perform(
+        self,
+        event: sct.Event,
+        inputs: Sequence[rosgraph.InputAssignment] = (),
+        message: Message = None,
+        source: sct.Event | None = None,
+    ) -> UnreadableError | None:
+        fault = super()._perform(event, inputs, message, source)
+        if isinstance(fault, ViolationError):
+            self.violations += map(assumption_name, fault.assumptions)
+        return fault
 
     def _before(self, name: str) -> bool:
         may_happen = super()._before(name)

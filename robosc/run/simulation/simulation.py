@@ -13,7 +13,7 @@ from robosc.model.engine import Role
 from robosc.model.semantics.definition import named_state
 from robosc.model.semantics.domains import domain
 from robosc.model.semantics.printing import SctPrinter
-from robosc.model.semantics.roles import assumption_name, event_name
+from robosc.model.semantics.roles import assumption_name, assumption_text, event_name
 from robosc.run.simulation.data import EventData
 from robosc.run.simulation.script import REFUSE, WAIT
 from robosc.run.simulation.unreadable import Unreadable
@@ -171,7 +171,7 @@ class Simulation:
         if by is Blocked.PLANT:
             return "the robot is not ready for it"
         if by is Blocked.ASSUMPTION:
-            return f"excluded by {' and '.join(a.text or a.name for a in self.engine.violated_assumptions(event))}"
+            return f"excluded by {' and '.join(map(assumption_text, self.engine.violated_assumptions(event)))}"
         if by is Blocked.REQUIREMENT:
             texts = [failing.text for failing in self.engine.failing_requirements(event) if failing.text]
             return f"forbidden by {' and '.join(texts) or 'a requirement'}"

@@ -16,7 +16,7 @@ from robosc.model import sct
 from robosc.model.places import place
 from robosc.model.semantics.naming import enumeration
 from robosc.model.semantics.printing import RobotPrinter, SctPrinter, conjunction
-from robosc.model.semantics.roles import SILENT, event_name, input_values
+from robosc.model.semantics.roles import SILENT, assumptions, event_name, input_values
 from robosc.model.semantics.walks import copy_tree
 from robosc.synthesis import count
 from robosc.tools.cli import EMPTY_SUPERVISOR, put, say
@@ -111,7 +111,7 @@ def command(
 
 def _assumption(model: sct.SupervisoryControlModel, name: str) -> sct.Plant:
     """Return the assumption with a name."""
-    known = {plant.origin: plant for plant in model.plants if plant.kind == sct.PlantKind.assumption and plant.origin}
+    known = {plant.origin: plant for plant in assumptions(model) if plant.origin}
     if name not in known:
         some = f" {name!r}: expected {enumeration(known)}" if known else " with a name"
         raise click.BadParameter(f"{model.name} has no assumption{some}", param_hint="'--without'")

@@ -16,7 +16,7 @@ from robosc.model.places import place
 from robosc.model.semantics.definition import reported_variables
 from robosc.model.semantics.domains import domain
 from robosc.model.semantics.edges import edges_of, origin
-from robosc.model.semantics.roles import Roles, event_name, plant_of
+from robosc.model.semantics.roles import Roles, assumption_text, assumptions, event_name, plant_of
 from robosc.run.simulation.data import data_beside
 from robosc.tools.diagrams import connections
 
@@ -59,15 +59,14 @@ def describe(models: Models, texts: Mapping[str, str], findings: Iterable[Diagno
         for requirement in model.requirements
         if requirement.text
     ]
-    assumptions = [
+    assumed = [
         {
             "event": event_name(event),
             "name": plant.origin or "",
-            "text": plant.text or "",
+            "text": assumption_text(plant),
             "place": describer.place(plant),
         }
-        for plant in model.plants
-        if plant.kind == sct.PlantKind.assumption
+        for plant in assumptions(model)
         for event in dict.fromkeys(edge.event for edge in edges_of(plant))
     ]
     invariants = [
@@ -80,7 +79,7 @@ def describe(models: Models, texts: Mapping[str, str], findings: Iterable[Diagno
         "automata": automata,
         "events": events,
         "commands": [event_name(event) for event in commands_of(model)],
-        "requirements": requirements + invariants + assumptions,
+        "requirements": requirements + invariants + assumed,
         "findings": [
             {
                 "message": finding.message,

@@ -7,6 +7,7 @@ from hypothesis import given, settings
 
 from robosc.base.cache import cache_results
 from robosc.m2m.sct_to_cif import transform
+from robosc.m2m.sct_to_cif.lower_arithmetic import Lowering
 from robosc.model import expression as ex
 from robosc.model import sct, xmi
 from robosc.model.reflection import tree
@@ -79,3 +80,10 @@ def test_a_model_is_lowered_once() -> None:
     given = model([plant("p", {"l": [edge("e")]}, controllable=["e"])])
     with cache_results():
         assert transform(given) is transform(given)
+
+
+def test_a_function_without_a_lowering_has_an_error_of_its_own() -> None:
+    root = ex.FunctionCall(function="sqrt", arguments=[ex.IntegerLiteral(value=4)])
+    below = ex.LessThan(left=root, right=ex.IntegerLiteral(value=3))
+    with pytest.raises(ValueError, match="no lowering for `sqrt`"):
+        Lowering({}, {}).condition(below)

@@ -5,11 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import pytest
+from click.testing import CliRunner
 
 import robosc
 from robosc.base.diagnostics import Severity
 from robosc.language import configuration as config
 from robosc.m2t.ros.preconditions import preconditions
+from robosc.tools.cli import main
+from tests.m2t.conftest import ROS1_INTERFACES
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -42,7 +45,7 @@ GOOD = {
 
 
 def found(
-    tmp_path: Path, settings: str = '{"onShutdown": []}', least: Severity | None = None, **changes: str
+    tmp_path: Path, settings: str = '{"onShutdown": []}', least: Severity | None = None, ros: int = 1, **changes: str
 ) -> list[str]:
     path = tmp_path / "cart.rscd"
     path.write_text(ROBOT % (GOOD | changes), encoding="utf-8")
@@ -52,7 +55,7 @@ def found(
     file = tmp_path / "controller-config.json"
     file.write_text(settings, encoding="utf-8")
     graph = robosc.to_rosgraph(robot)
-    findings = preconditions(robosc.Models(model, graph, robot), config.read(file), "controller", 1)
+    findings = preconditions(robosc.Models(model, graph, robot), config.read(file), "controller", ros)
     return [
         f"{finding.file.rpartition('/')[2]}:{finding.span.line}: {finding.message}"
         for finding in findings
@@ -155,6 +158,36 @@ MORE = """incoming message halt with type: boolean
   component Arm {"""
 
 
+LIMITED = """robot Cart {
+  component Base { incoming message limit with identifier: "/limit", type: nav2_msgs/SpeedLimit }
+}
+"""
+
+
+@pytest.mark.parametrize("kind", ["nav2_msgs/SpeedLimit", "example_interfaces/Bool"])
+def test_a_package_that_only_the_other_ros_has(tmp_path: Path, kind: str) -> None:
+    more, package = f"incoming message limit with type: {kind}", kind.partition("/")[0]
+    (line,) = [
+        number for number, text in enumerate((ROBOT % (GOOD | {"more": more})).splitlines(), start=1) if more in text
+    ]
+    said = f"cart.rscd:{line}: ROS 1 has no package {package}, only ROS 2 has it"
+    assert found(tmp_path, more=more, least=Severity.ERROR) == [said]
+    assert found(tmp_path, more=more, least=Severity.ERROR, ros=2) == []
+
+
+def test_a_package_of_the_user_counts_for_each_ros(tmp_path: Path) -> None:
+    model = tmp_path / "cart.rscd"
+    model.write_text(LIMITED, encoding="utf-8")
+    options = ["transform", str(model), "--to", "ros1", "-o", str(tmp_path / "out")]
+    answer = CliRunner().invoke(main, options)
+    assert answer.exit_code == 1
+    assert f"{model}:2:76: error: ROS 1 has no package nav2_msgs, only ROS 2 has it [ros-node]" in answer.output
+    assert "hint: generate for ROS 2; if you have a nav2_msgs for ROS 1, add its folder" in answer.output
+    assert not (tmp_path / "out").exists()
+    answer = CliRunner().invoke(main, [*options, "--interface-path", str(ROS1_INTERFACES)])
+    assert answer.exit_code == 0, answer.output
+
+
 def test_services_and_actions_are_welcome(tmp_path: Path) -> None:
     assert found(tmp_path, more="service reset with request: none, response: none") == []
 
@@ -183,6 +216,26 @@ def test_where_nothing_stops_the_robot(tmp_path: Path, settings: str, expected: 
     warnings = [f"controller-config.json:{expected}"] if expected else []
     assert found(tmp_path, settings, Severity.WARNING, more=MORE) == warnings
     assert found(tmp_path, settings, Severity.WARNING) == [], "it sends no messages"
+
+
+REPORTS = '"onViolation": after the first violation of an assumption, nothing about the robot is proved'
+VIOLATED = 'a violation of an assumption only holds commands back: "onShutdown" names no message that stops the robot'
+
+
+@pytest.mark.parametrize(
+    ("settings", "expected"),
+    [
+        ("{}", ['"onShutdown" is not set: when the node ends, the robot continues with its last command', VIOLATED]),
+        ('{"onShutdown": []}', [VIOLATED]),
+        ('{"onShutdown": ["go"]}', ['"onShutdown": go is then sent regardless of "requirement Eye.open disables go"']),
+        ('{"onShutdown": [], "onViolation": "report"}', [REPORTS]),
+    ],
+)
+def test_where_nothing_stops_the_robot_after_a_violation(tmp_path: Path, settings: str, expected: list[str]) -> None:
+    more = MORE.replace("requirement Eye", "assume seen needs Eye.open requirement Eye", 1)
+    assert more != MORE
+    expected = [f"controller-config.json:1: {message}" for message in expected]
+    assert found(tmp_path, settings, Severity.WARNING, more=more) == expected
 
 
 DOUBLES = """incoming message drive with type: double

@@ -101,6 +101,7 @@ def written(tmp_path_factory: pytest.TempPathFactory, planned: Planned) -> Calla
     def folder(name: str) -> Path:
         made = tmp_path_factory.mktemp(name)
         call = ["transform", str(MODELS[name]), "--to", "supervisor,cif,ros1,ros2", "--with-tests", "-o", str(made)]
+        call += ["--interface-path", str(ROOT / "tests" / "ros" / "interfaces" / "ros1" / "nav2_msgs")]
         with with_tours_of(planned, name):
             done = CliRunner().invoke(main, call)
         assert done.exit_code == 0, done.output

@@ -88,7 +88,7 @@ def test_faults_of_the_graph_are_told_as_long_as_they_last(tmp_path: Path) -> No
     for _ in range(2):
         world.wait(6.0)
         found = {name: status(world, name) for name in ("Lidar", "Battery", "Bumper", "Encoder", "Platform")}
-        assert {name: reported.message for name, reported in found.items() if reported.warns} == {
+        assert {name: reported.message for name, reported in found.items() if reported.level == "WARN"} == {
             "Lidar": "looking; /scan: /lidar offers a quality of service that does not fit: it is best effort",
             "Battery": "powered; /charge: /battery publishes std_msgs/String, not std_msgs/Int16",
             "Bumper": "untouched; /bumper: nobody publishes it",
@@ -97,7 +97,7 @@ def test_faults_of_the_graph_are_told_as_long_as_they_last(tmp_path: Path) -> No
     assert len(world.port.said) == len(set(world.port.said)), "the log has each once"
     world.port.others = {topics["/bumper"]: [Endpoint("/bumper", type_name(topics["/bumper"].interface))]}
     world.wait(2.0)
-    assert not any(reported.warns for reported in world.port.statuses[-1])
+    assert {reported.level for reported in world.port.statuses[-1]} == {"OK"}
 
 
 def test_a_server_of_another_type_is_told(tmp_path: Path) -> None:
@@ -115,7 +115,7 @@ def test_a_server_of_another_type_is_told(tmp_path: Path) -> None:
     world.wait(2.0)
     world.port.calls[-1].answered(Record(success=True, message="on"))
     world.wait(0.2)
-    assert not status(world, "Lamp").warns
+    assert status(world, "Lamp").level == "OK"
 
 
 def test_several_servers_are_told_as_long_as_they_last(tmp_path: Path) -> None:
@@ -129,7 +129,7 @@ def test_several_servers_are_told_as_long_as_they_last(tmp_path: Path) -> None:
         assert status(world, "Lamp").message == f"dark; {fault}"
         world.port.servers = []
         world.wait(2.0)
-        assert not status(world, "Lamp").warns
+        assert status(world, "Lamp").level == "OK"
     assert world.port.said.count(fault) == 1
     assert not [text for text in world.port.said if "/stranger" in text]
 
@@ -151,7 +151,7 @@ def test_a_server_that_has_come_back_is_no_second_one_until_ros_must_know(tmp_pa
     for servers in (twice, []):
         world.port.servers = servers
         world.wait(22.0)
-        assert not status(world, "Lamp").warns
+        assert status(world, "Lamp").level == "OK"
     world.port.servers = twice
     world.wait(30.0)
     assert status(world, "Lamp").message == "dark; /lamp: several nodes /switch serve it: only one answer counts"
@@ -172,7 +172,7 @@ def test_commands_wait_for_the_topics_that_are_named(tmp_path: Path) -> None:
     world.hear("charge", data=50)
     world.wait(0.2)
     assert [topic for topic, _ in world.port.sent][:1] == ["/cmd_vel"]
-    assert not status(world, "Battery").warns
+    assert status(world, "Battery").level == "OK"
     assert world.port.said == [
         "commands wait for /charge, /stop",
         "commands wait no longer: each topic was heard",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import isfinite
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from robosc.model.semantics.component_parts import STATELESS, Parts, components, request
 from robosc.model.semantics.roles import event_name
@@ -71,7 +71,8 @@ class StatusReporter:
         values += [(request(sending), self._verdict(sending.event)) for sending in parts.commands]
         violated = self._own.violated(parts.name)
         faults = [*(f"violated: {name}" for name in violated), *faults]
-        return ComponentStatus(parts.name, bool(faults), "; ".join([state, *faults]), values, bool(violated))
+        level: Literal["OK", "WARN", "ERROR"] = "ERROR" if violated else "WARN" if faults else "OK"
+        return ComponentStatus(parts.name, level, "; ".join([state, *faults]), values)
 
     def _verdict(self, event: sct.Event) -> str:
         if not self._blocking.engine.enabled(event_name(event)):

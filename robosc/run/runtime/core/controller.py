@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.base.ros_types import Section
 from robosc.engine import Settings as LoopSettings
-from robosc.language.configuration import NO_STOP, NO_STOP_ON_SILENCE
+from robosc.language.configuration import NO_STOP, NO_STOP_ON_SILENCE, NO_STOP_ON_VIOLATION
 from robosc.language.configuration.parameters import topic_words, watchdog
 from robosc.model.semantics.messages import paths_set
 from robosc.model.semantics.operators import UnreadableError
@@ -150,6 +150,8 @@ class Controller(EventHandler):
                 self._port.warn(NO_STOP_ON_SILENCE)
             elif not self._settings.configuration.says_how_to_stop:
                 self._port.warn(NO_STOP)
+            if self._violations.stop:
+                self._port.warn(NO_STOP_ON_VIOLATION)
         self._warn_of_report()
         if self._unheard:
             self._port.info(f"commands wait for {_topics(self._unheard)}")
@@ -200,10 +202,7 @@ class Controller(EventHandler):
 
     def _halt(self) -> None:
         """Cancel running actions, then send the last messages regardless of their requirements."""
-        with self._batch():
-            for event, client in self.goals.items():
-                self._control.perform(event_name(event))
-                client.cancel()
+        self._cancel_goals()
         self._send_outside(self._safe.on_shutdown)
 
     def _send_outside(self, messages: Sequence[rosgraph.Sending]) -> None:
@@ -235,12 +234,12 @@ class Controller(EventHandler):
     def _note_success(self, client: Client) -> None:
         self._failures[client].why = ""
 
-    def _note_failure(self, client: Client, why: str) -> None:
+    def _note_failure(self, client: Client, why: str, *, logged: bool = False) -> None:
         if self._monitor.has_other_type(client):
             why = OTHER_TYPE
         failure = self._failures[client]
         if failure.why != why:
-            super()._note_failure(client, why)
+            super()._note_failure(client, why, logged=logged)
         failure.why = why
         failure.pause = self._event_loop.call_later(self._settings.seconds("retry_ms"), partial(self._retry, failure))
 
@@ -300,8 +299,10 @@ class Controller(EventHandler):
             return f"it waits for {_topics(self._unheard)}"
         if self._stopping:
             return "the node is not active"
+        if violated := super()._held_back(event):
+            return violated
         if self._halted:
-            return "an assumption is violated" if self._violations.stopped else "a topic is silent"
+            return "a topic is silent"
         if event_name(event) in self._forbidden:
             return "its data is forbidden"
         return "its data cannot be sent" if event_name(event) in self._withheld else None

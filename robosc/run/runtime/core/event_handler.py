@@ -94,9 +94,10 @@ class EventHandler:
         self._parameters = {known.name: parameter for parameter, known in model_parameters(graph).items()}
         self.set_parameters(settings.parameters)
         self._times = Times(self._control.timers, event_loop, self._expire)
-        stop = settings.configuration.on_violation == "stop"
+        stop = settings.configuration.stops_on_violation(graph.model)
         self._violations = Violations(self._control.engine, stop=stop)
-        self._reports = StateReporter(graph, self._data, port, settings.configuration, self._violations)
+        configuration, controlled = settings.configuration, self._control.engine
+        self._reports = StateReporter(graph, controlled, self._data, port, configuration, self._violations)
         self._blocking = Blocking(self._control.engine)
         own = Own(self._violations.of, self._held_back, self._faults)
         self._statuses = StatusReporter(graph, port, self._data, self._blocking, own)
@@ -180,13 +181,22 @@ class EventHandler:
 
     def _stop_if_violated(self) -> None:
         """Stop the robot after the first violation, unless the node only reports violations."""
-        if self._violations.must_halt():
-            self._port.error("the robot is stopped: it violated an assumption, and is no longer as the model describes")
+        if self._violations.take_halt():
+            self._port.error(
+                "commands are held back: the robot violated an assumption, and is no longer as the model describes"
+            )
             self._halt()
 
     def _halt(self) -> None:
         """Stop the robot."""
         raise NotImplementedError
+
+    def _cancel_goals(self) -> None:
+        """Cancel all goals, in the model, too."""
+        with self._batch():
+            for event, goals in self.goals.items():
+                self._control.perform(event_name(event))
+                goals.cancel()
 
     def _warn_of_report(self) -> None:
         """Warn at the start if the node goes on after a violation."""
@@ -234,7 +244,7 @@ class EventHandler:
             response = client.response.event
             fault = self._perform(response, client.response.inputs, message)
             if fault is not None:
-                self._note_failure(client, str(fault))
+                self._note_failure(client, str(fault), logged=isinstance(fault, ViolationError))
                 self._end(client.error, Failure.UNREADABLE, message, response)
             else:
                 self._note_success(client)
@@ -270,9 +280,10 @@ class EventHandler:
     def _note_success(self, client: Client) -> None:
         """Note a response of a call or goal that can be read."""
 
-    def _note_failure(self, client: Client, why: str) -> None:
-        """Note that a call or goal has failed."""
-        self._port.warn(f"{client.identifier}: {why}")
+    def _note_failure(self, client: Client, why: str, *, logged: bool = False) -> None:
+        """Note that a call or goal has failed, and warn about it unless the reason is `logged` already."""
+        if not logged:
+            self._port.warn(f"{client.identifier}: {why}")
 
     def _perform(
         self,
@@ -380,9 +391,9 @@ class EventHandler:
 
     # Contents of `/diagnostics`
 
-    def _held_back(self, event: sct.Event) -> str | None:  # noqa: ARG002  # a layer forwards all allowed commands
+    def _held_back(self, event: sct.Event) -> str | None:  # noqa: ARG002  # a violation holds back all commands
         """Return why a command that the supervisor allows is not sent; None if it can be sent."""
-        return None
+        return "an assumption is violated" if self._violations.stopped else None
 
     def _faults(self, parts: Parts) -> list[str]:
         """Return the faults of a component."""

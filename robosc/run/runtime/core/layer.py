@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from robosc.base.ros_types import Section
 from robosc.engine import Settings as LoopSettings
 from robosc.model import engine, rosgraph
-from robosc.model.semantics.roles import event_name
+from robosc.model.semantics.roles import assumption_text, event_name
 from robosc.run.runtime.core.composer import Composer
 from robosc.run.runtime.core.event_handler import EventHandler
 from robosc.run.runtime.core.node_data import UNSENDABLE, why_unsendable
@@ -47,10 +47,9 @@ class Layer(EventHandler):
         #: Events blocked since the last report on `/diagnostics`.
         self._blocked: set[sct.Event] = set()
         self._composer = Composer(port, self._data)
-        instead = (safe or SafeMessages()).on_blocked
-        self._publishers = {
-            sending: publisher for publisher in graph.publishers for sending in publisher.sendings if sending in instead
-        }
+        publishers = {sending: publisher for publisher in graph.publishers for sending in publisher.sendings}
+        #: Publishers of the messages of `on_blocked`, in the order of the configuration.
+        self._publishers = {sending: publishers[sending] for sending in (safe or SafeMessages()).on_blocked}
         #: Messages of `on_blocked` that were forwarded last: the layer sends one when it blocks the next.
         self._forwarded: set[rosgraph.Sending] = set()
 
@@ -83,8 +82,7 @@ class Layer(EventHandler):
                     self._forwarded.add(sending)
                 return True
         if self._violations.stopped:
-            texts = [assumption.text or assumption.name for assumption in self._violations.assumptions]
-            self._block(sending, "assumption", texts)
+            self._block(sending, "assumption", list(map(assumption_text, self._violations.assumptions)))
         else:
             reason = self._blocking.reason(sending.event)
             self._block(sending, reason.kind, reason.because)
@@ -114,16 +112,10 @@ class Layer(EventHandler):
 
     def _halt(self) -> None:
         """Cancel running goals, and send the messages of `on_blocked`."""
-        with self._batch():
-            for event, goals in self.goals.items():
-                self._control.perform(event_name(event))
-                goals.cancel()
+        self._cancel_goals()
         self._forwarded.clear()
         for sending in self._publishers:
             self._send_instead(sending)
-
-    def _held_back(self, event: sct.Event) -> str | None:  # noqa: ARG002  # all commands are blocked
-        return "an assumption is violated" if self._violations.stopped else None
 
     def _send_instead(self, sending: rosgraph.Sending) -> None:
         """Send a message in place of blocked ones, with default data if its own can't be sent."""

@@ -278,7 +278,7 @@ class RunningNode(ControllerPort, ABC):
         report.header.stamp = self._stamp_now()
         report.status = [
             kinds.DiagnosticStatus(
-                level=getattr(kinds.DiagnosticStatus, "ERROR" if status.fails else "WARN" if status.warns else "OK"),
+                level=getattr(kinds.DiagnosticStatus, status.level),
                 name=f"{self.full_name.removeprefix('/')}: {status.component}",
                 message=status.message,
                 hardware_id=self._graph.name,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeAlias
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -92,16 +92,12 @@ class Goal(Protocol):
 
 @dataclass(frozen=True)
 class ComponentStatus:
-    """Status of a component: whether it warns, its state and faults, and further values.
-
-    `fails`: it has an error.
-    """
+    """Status of a component: its level, its state and faults in words, and further values."""
 
     component: str
-    warns: bool
+    level: Literal["OK", "WARN", "ERROR"]
     message: str
     values: Sequence[tuple[str, str]]
-    fails: bool = False
 
 
 class Port(Protocol):

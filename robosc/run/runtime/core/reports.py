@@ -14,6 +14,7 @@ from robosc.run.runtime.core.json_text import Json, json_text
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable, Sequence
 
+    from robosc.engine import Engine
     from robosc.language.configuration import Configuration
     from robosc.run.runtime.core.node_data import NodeData
     from robosc.run.runtime.core.port import Port
@@ -26,16 +27,17 @@ _PAUSE = 5.0
 class StateReporter:
     """Publish the state on every change, and for every new subscription; do nothing without subscriptions."""
 
-    def __init__(
+    def __init__(  # noqa: PLR0913, PLR0917 - the sources of a report
         self,
         graph: rosgraph.RosGraph,
+        engine: Engine,
         data: NodeData,
         port: Port,
         configuration: Configuration,
         violations: Violations,
     ) -> None:
         self._graph = graph
-        self._engine = violations.engine
+        self._engine = engine
         self._data = data
         self._port = port
         self._publishes = configuration.publish_state_information

@@ -5,9 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.model.semantics.operators import UnreadableError
-from robosc.model.semantics.roles import assumption_name, component_name, event_name
+from robosc.model.semantics.roles import assumption_name, assumption_text, assumptions, component_name, event_name
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from robosc.engine import Engine
     from robosc.model import sct
 
@@ -15,40 +17,42 @@ if TYPE_CHECKING:
 class ViolationError(UnreadableError):
     """Event against assumptions. It counts as an event whose data cannot be read."""
 
+    def __init__(self, assumptions: Sequence[sct.Plant]) -> None:
+        super().__init__(f"violates `{'` and `'.join(map(assumption_text, assumptions))}`")
+        self.assumptions = assumptions
+
 
 class Violations:
     """Violations since the node started; `stop`: the first one stops the robot.
 
-    `assumptions` are the violated ones, in the order of their first violation. `names` has the name for each violation.
+    `assumptions` are the violated ones, in the order of their first violation.
     """
 
     def __init__(self, engine: Engine, *, stop: bool) -> None:
-        self.engine = engine
-        self._stop = stop
-        self.exist = any(event.guard.assumption is not None for event in engine.executed.events)
+        self._engine = engine
+        self.stop = stop
+        self.exist = bool(assumptions(engine.model))
         self.assumptions: dict[sct.Plant, None] = {}
-        self.names: list[str] = []
         self._by_component: dict[str, dict[sct.Plant, None]] = {}
         self._halted = False
 
     def check(self, event: sct.Event) -> ViolationError | None:
         """Return the violation of an event that is about to happen; None if no assumption excludes it."""
-        violated = self.engine.violated_assumptions(event_name(event)) if self.exist else []
+        violated = self._engine.violated_assumptions(event_name(event)) if self.exist else []
         if not violated:
             return None
         known = self._by_component.setdefault(component_name(event), {})
-        self.names += map(assumption_name, violated)
         for assumption in violated:
             self.assumptions[assumption] = known[assumption] = None
-        return ViolationError(f"violates `{'` and `'.join(assumption.text or '' for assumption in violated)}`")
+        return ViolationError(violated)
 
     @property
     def stopped(self) -> bool:
         """Whether a violation has stopped the robot."""
-        return self._stop and bool(self.assumptions)
+        return self.stop and bool(self.assumptions)
 
-    def must_halt(self) -> bool:
-        """Return whether the robot is to be stopped now: once, after the first violation."""
+    def take_halt(self) -> bool:
+        """Return whether to stop the robot now. The answer is positive once, after the first violation."""
         halted, self._halted = self._halted, self.stopped
         return self._halted and not halted
 

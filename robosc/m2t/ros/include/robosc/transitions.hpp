@@ -6,6 +6,7 @@
 #include <deque>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "robosc/json.hpp"
 #include "robosc/version.hpp"
@@ -35,8 +36,11 @@ class Transitions {
   }
 
   /// The same, with the violated assumptions.
-  std::string report(const char* robot, double time, const Json& components, const Json& violated) const {
-    return to_json(reported(robot, time, components).add("violated", violated));
+  std::string report(const char* robot, double time, const Json& components,
+                     const std::vector<std::string>& violated) const {
+    Json names = Json::array();
+    for (const std::string& name : violated) names.add(name);
+    return to_json(reported(robot, time, components).add("violated", names));
   }
 
  private:

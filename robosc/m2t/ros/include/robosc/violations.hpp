@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "robosc/json.hpp"
 #include "robosc/throttle.hpp"
 #include "robosc/version.hpp"
 
@@ -32,19 +31,15 @@ class Violations {
 
   bool empty() const { return names_.empty(); }
 
-  /// Whether to stop the robot now: once, after the first violation.
-  bool must_halt() { return !empty() && !std::exchange(halted_, true); }
+  /// Returns whether to stop the robot now. The answer is positive once, after the first violation.
+  bool take_halt() { return !empty() && !std::exchange(halted_, true); }
 
   /// Whether there are more assumptions than at the last call.
   bool changed() { return std::exchange(reported_, names_.size()) < names_.size(); }
 
   const std::vector<std::string>& texts() const { return texts_; }
 
-  Json names() const {
-    Json list = Json::array();
-    for (const std::string& name : names_) list.add(name);
-    return list;
-  }
+  const std::vector<std::string>& names() const { return names_; }
 
   /// The names of the assumptions that events of a component have violated.
   std::vector<std::string> of(const std::string& component) const {
