@@ -275,13 +275,19 @@ class _Findings:
             f"add `requirement {action} needs ...`, or `on request to {action}` in the states that allow it",
         )
 
-    @staticmethod
-    def unused_assumption(plant: sct.Plant) -> Diagnostic:
+    def unused_assumption(self, plant: sct.Plant) -> Diagnostic:
+        alike = [
+            other
+            for other in self._model.plants
+            if other.kind == sct.PlantKind.assumption and plant.source is not None and other.source == plant.source
+        ]
+        others = max(len(alike) - 1, 0)
+        instances = "instance" if others == 1 else f"{others} instances"
         return _finding(
             plant,
             "assumption-unused",
             f"`{plant.text}` excludes nothing: wherever its events can come in the supervised robot, its condition"
-            " holds",
+            f" holds{f'; the same holds for the other {instances}' if others else ''}",
             "remove it, or correct its condition",
         )
 
