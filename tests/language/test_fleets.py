@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +20,9 @@ from robosc.language.hover import describe
 from robosc.language.reading import read
 from robosc.language.semantic_tokens import classify
 from robosc.language.text import Documents
+from robosc.model import robosc as robosc_model
 from robosc.model import sct
+from robosc.model.semantics import instances as semantics
 from robosc.tools.cli import main
 from tests.language.second_edition import errors, requirements, running, supervised
 
@@ -121,6 +124,54 @@ def test_output_names_instances_without_brackets() -> None:
     model = supervised(robot(FLEET, "requirement Cell[2].enter needs Cell[1].outside"))
     assert {"component_Cell1", "message_Cell2_enter"} <= {plant.name for plant in model.plants}
     assert [requirement.text for requirement in model.requirements] == ["requirement Cell2.enter needs Cell1.outside"]
+
+
+@pytest.mark.parametrize("number", [1, 3])
+def test_each_fault_of_a_fleet_is_reported_once(tmp_path: Path, number: int) -> None:
+    """Two faults are two findings, also at one line, and a fault of several instances is one."""
+    (tmp_path / "Lib.rscd").write_text(
+        """library Lib {
+          component Arm {
+            service grip1 with identifier: "/grip", request: none, response: none
+            service grip2 with identifier: "/drop", request: none, response: none
+            outgoing message ok with identifier: "/ok", type: none
+            behaviour {
+              initial marked state still { on request to grip1 goto closing on request to grip2 goto opening }
+              state closing { on response from ok goto still }
+              state opening { on response from ok goto still }
+            }
+          }
+        }"""
+    )
+    (tmp_path / "robot.rscd").write_text(
+        f"""robot R {{
+          component Hand[1..{number}] from Lib import Arm
+            with {{ grip1: "/g" + text(number), grip2: "/d" + text(number), ok: "/o" + text(number) }}
+          requirement each Arm: {{ Arm.grip1, Arm.grip2 }} needs Arm.still
+        }}"""
+    )
+    messages = [finding.message for finding in robosc.check(robosc.load(tmp_path / "robot.rscd"))]
+    starts = ["`Hand1` goes to `closing` with the request to `grip1`", "`Hand1` goes to `opening` with the request"]
+    assert [message[: len(start)] for message, start in zip(messages, starts, strict=True)] == starts
+
+
+def test_a_topic_of_several_instances_is_reported_once() -> None:
+    """The topics of the instances differ in their number."""
+    others = " ".join(f'component Other{at} is Station("/cell{at}")' for at in (1, 2, 3))
+    findings = robosc.check(robosc.load(text=robot(others, FLEET)))
+    messages = [finding.message for finding in findings if finding.rule == "unique-topic"]
+    names = [f"`done` of `Cell{at}` and `done` of `Other{at}` share the topic `/cell{at}/done`" for at in (1, 2, 3)]
+    assert [any(name in message for message in messages) for name in names] == [True, True, True]
+    twins = 'component Pair[1..3] is Station("/cell" + text(number))'
+    findings = robosc.check(robosc.load(text=robot(FLEET, twins)))
+    [message] = [finding.message for finding in findings if finding.rule == "unique-topic"]
+    assert "`done` of `Pair1` and `done` of `Cell1` share the topic `/cell1/done`" in message
+
+
+@pytest.mark.parametrize("uses", ["component Cell[1..300] is Station(ns: text(number))", WRITTEN])
+def test_a_name_of_a_template_is_reported_once(uses: str) -> None:
+    lone = "component Lone { incoming message enter with type: none }"
+    assert [rule for rule, _ in errors(robot(lone, uses))] == ["unique-communication"]
 
 
 def test_an_index_is_a_constant_expression() -> None:
@@ -261,6 +312,34 @@ def test_automata_of_each_in_an_inner_quantifier() -> None:
     assert outcomes(text) == {Outcome.PROVED}
 
 
+OWN = """requirement D: each Station: Station.enter needs (count Station: Station.inside) < 2 and Station.outside
+    requirement A: each Station: automaton {
+      initial marked state first { on request to Station.enter goto second }
+      state second { on request to enter goto first }
+    }
+    requirement each Station: enter needs A.first or (any Station: A.second)
+    requirement enter needs A[Cell[2]].first or A[Cell[1]].second
+    property P: each Station: reachable Station.inside
+    assume each Station: Station.done needs Station.inside"""
+
+
+def test_each_of_a_template_in_its_own_text() -> None:
+    """There, the template is the instance whose text it is: `each` writes the definition once for each instance."""
+    own = robot(FLEET).replace("behaviour {", f"{OWN} behaviour {{", 1)
+    model = supervised(own)
+    assert [part.text for part in model.requirements if part.name and "D" in part.name] == [
+        f"requirement Cell{at}.D[Cell{at}]: Cell{at}.enter needs (count Station: Station.inside) < 2"
+        f" and Cell{at}.outside"
+        for at in (1, 2, 3)
+    ]
+    assert [part.text for part in model.properties] == [
+        f"property Cell{at}.P[Cell{at}]: reachable Cell{at}.inside" for at in (1, 2, 3)
+    ]
+    assert len([part for part in stated(model) if not isinstance(part, sct.Requirement)]) == 6
+    assert len(model.requirements) == 9
+    assert outcomes(own) == {Outcome.PROVED}
+
+
 def test_each_in_a_component() -> None:
     """A requirement in a component has the name of the component before its own."""
     door = """component Door {
@@ -295,6 +374,64 @@ def test_each_stays_a_name() -> None:
     }"""
     assert errors(text) == [("unique-component", 8)]  # the component and the requirement, as ever
     assert errors(text.replace("requirement each:", "requirement")) == []
+
+
+def test_each_with_an_inner_quantifier_costs_one_expansion() -> None:
+    """The written-out requirements have the expanded quantifier in common."""
+    text = "requirement each Station: Station.enter needs Station.outside and (count Station: Station.inside) < 2"
+
+    def cost(number: int) -> int:
+        steps = 0
+
+        def counted(_frame: object, event: str, _argument: object) -> None:
+            nonlocal steps
+            steps += event == "call"
+
+        model = robosc.load(text=robot(f'component Cell[1..{number}] is Station("/cell" + text(number))', text))
+        before = sys.getprofile()
+        sys.setprofile(counted)
+        try:
+            robosc.check(model)
+        finally:
+            sys.setprofile(before)
+        return steps
+
+    cost(2)  # load modules once, before counting
+    short, long = cost(20), cost(80)
+    assert long < 7 * short
+
+
+def test_assumptions_of_a_library_are_sorted_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assumptions = " ".join(f"assume A{number}: Arm.ok needs Arm.moving" for number in range(5))
+    (tmp_path / "Lib.rscd").write_text(
+        f"""library Lib {{ {assumptions} component Arm {{
+          incoming message move with type: none
+          outgoing message ok with type: none
+          behaviour {{
+            initial marked state still {{ on request to move goto moving }}
+            state moving {{ on response from ok goto still }}
+          }}
+        }} }}"""
+    )
+    (tmp_path / "robot.rscd").write_text(
+        """robot R {
+          component Arm[1..9] from Lib import Arm with { move: "/m" + text(number), ok: "/o" + text(number) }
+        }"""
+    )
+    sorted_assumptions: list[robosc_model.Assumption] = []
+    original = semantics.assumed_components
+
+    def counted(assumption: robosc_model.Assumption, known: semantics.Instances) -> list[robosc_model.Component]:
+        sorted_assumptions.append(assumption)
+        return original(assumption, known)
+
+    monkeypatch.setattr(semantics, "assumed_components", counted)
+    known = semantics.Instances(robosc.load(tmp_path / "robot.rscd"))
+    assert known.statements(robosc_model.Requirement) == []
+    assert sorted_assumptions == []
+    for _ in range(3):
+        assert len(known.statements(robosc_model.Assumption)) == 45
+    assert len(sorted_assumptions) == 5
 
 
 def test_files_take_both_names(tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeGuard
 
+from robosc.base.cache import cached
 from robosc.model import expression as ex
 from robosc.model import robosc
 from robosc.model.semantics.communication import data_type, event_of, port_event_of
@@ -192,7 +193,12 @@ def all_assignments(instances: Instances) -> Iterator[AssignmentPlace]:
 
 def accesses(expression: ex.Expression | None) -> Iterator[robosc.Access]:
     """Iterate over the accesses in an expression, from left to right."""
-    return (part for part in parts(expression) if isinstance(part, robosc.Access))
+    # Many rules read the conditions, of which the copies of a text with `each` can be long.
+    return iter(cached((accesses, expression), lambda: _accesses(expression)))
+
+
+def _accesses(expression: ex.Expression | None) -> list[robosc.Access]:
+    return [part for part in parts(expression) if isinstance(part, robosc.Access)]
 
 
 def read_data(

@@ -12,7 +12,6 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterable
 
     from robosc.model import expression as ex
-    from robosc.model import robosc
 
 _GRAMMAR = locate("grammar/robosc.tx").read_text(encoding="utf-8")
 
@@ -78,14 +77,6 @@ def escape(name: str, keywords: Collection[str]) -> str:
 def escape_keyword(name: str) -> str:
     """Return a name for a RoboSC text at a place where a keyword may stand."""
     return f"^{name}" if name in ROBOSC_KEYWORDS else name
-
-
-def instance_text(component: robosc.Component, number: object) -> str:
-    """Return the text that names an instance: `Base`, or `Cell[2]` in a fleet. `…` stands for an unknown number."""
-    name = escape_keyword(component.name)
-    if component.first is None:
-        return name
-    return f"{name}[{number if isinstance(number, int) else '…'}]"
 
 
 def output_name(name: str) -> str:
