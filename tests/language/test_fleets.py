@@ -447,16 +447,19 @@ def test_files_take_both_names(tmp_path: Path) -> None:
           expect Turns[Cell[3]].mine or Turns[Cell3].yours
           expect Cell[2].enter forbidden by Turns[Cell[2]]
           expect Cell2.enter forbidden by Turns[Cell2]
+          response from Cell[01].done
+          expect Cell[02].enter forbidden by Turns[Cell[02]]
         """
     )
+    assert errors(text.replace("Turns.mine", "Turns[Cell[02]].mine")) == []
     script = "request to Cell[1].enter\nresponse from Cell1.done\nmessage_Cell[2]_enter.c_trigger\n"
     test = CliRunner().invoke(main, ["test", str(tmp_path / "robot.rscd"), str(tmp_path / "good.scenarios")])
     assert "no event" not in test.output
     assert "[unresolved-reference]" not in test.output
     simulated = CliRunner().invoke(main, ["simulate", str(tmp_path / "robot.rscd"), "--script", "-"], input=script)
     assert [json.loads(line)["accepted"] for line in simulated.stdout.splitlines()] == [True, True, True]
-    settings = Configuration.model_validate({"onShutdown": ["Cell[2].enter", "Cell3.enter"]})
-    assert settings.on_shutdown == ["Cell2.enter", "Cell3.enter"]
+    settings = Configuration.model_validate({"onShutdown": ["Cell[2].enter", "Cell3.enter", "Cell[010].enter"]})
+    assert settings.on_shutdown == ["Cell2.enter", "Cell3.enter", "Cell10.enter"]
 
 
 def test_a_condition_of_a_scenario_keeps_its_columns(tmp_path: Path) -> None:

@@ -34,7 +34,7 @@ TEXT_FUNCTION = "text"
 #: The number of the instance in the arguments and remappings of a fleet.
 NUMBER = "number"
 #: An instance of a fleet, behind its name.
-_INSTANCE = re.compile(r"(?<=\w)\[([0-9]+)\]")
+_INSTANCE = re.compile(r"(?<=\w)\[0*([0-9]+)\]")
 _WORD = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 
 
@@ -80,7 +80,10 @@ def escape_keyword(name: str) -> str:
 
 
 def output_name(name: str) -> str:
-    """Return a name as all output has it: `Cell2.enter` for `Cell[2].enter`. Other names stay unchanged."""
+    """Return a name as all output has it: `Cell2.enter` for `Cell[2].enter`. Other names stay unchanged.
+
+    As in a model, `Cell[02]` is `Cell[2]`.
+    """
     return _INSTANCE.sub(r"\1", name)
 
 
