@@ -14,6 +14,7 @@ import robosc
 from robosc.analysis.verify import validate_model
 from robosc.analysis.verify.verdict import Outcome
 from robosc.base.ros_types import RosTypes
+from robosc.language.checks import check
 from robosc.language.completion import proposals
 from robosc.language.configuration import Configuration
 from robosc.language.hover import describe
@@ -399,6 +400,67 @@ def test_each_with_an_inner_quantifier_costs_one_expansion() -> None:
     cost(2)  # load modules once, before counting
     short, long = cost(20), cost(80)
     assert long < 7 * short
+
+
+LIBRARY = """library Arms {
+  component Arm(ns: string) {
+    incoming message move with identifier: ns + "/move", type: none
+    outgoing message ok with identifier: ns + "/ok", type: none
+    behaviour {
+      initial marked state still { on request to move goto moving }
+      state moving { on response from ok goto still }
+    }
+  }
+  component Gate {
+    outgoing message opened with type: none
+    behaviour { initial marked state free { on response from opened } }
+  }
+  component Lone is Arm("/lone")
+  ASSUMPTION
+}"""
+
+
+def test_each_of_a_template_in_a_library(tmp_path: Path) -> None:
+    """The assumption holds for each import of the template, and of a component that is one."""
+    assumption = "assume A: each Arm: Arm.ok needs Arm.moving"
+    (tmp_path / "Arms.rscd").write_text(LIBRARY.replace("ASSUMPTION", assumption))
+    path = tmp_path / "robot.rscd"
+    path.write_text(
+        """robot R {
+          component Hand[1..2] from Arms import Arm("/hand" + text(number))
+          component Third from Arms import Lone
+          component Way from Arms import Gate
+        }"""
+    )
+    robot_model = robosc.load(path)
+    model = robosc.to_sct(robot_model)
+    robosc.synthesize(model)
+    assert [plant.text for plant in model.plants if plant.text] == [
+        f"assume {name}.A[{name}]: {name}.ok needs {name}.moving" for name in ("Hand1", "Hand2", "Third")
+    ]
+    assert validate_model(robot_model, model).outcome is Outcome.PROVED
+
+
+@pytest.mark.parametrize(
+    ("assumption", "message", "hint"),
+    [
+        (
+            "assume each Arm: Arm.ok needs Gate.free",
+            "this assumption is about `Arm` and `Gate`, expected one component: each import of it has the assumption",
+            "write it in the robot",
+        ),
+        (
+            "assume Lone.ok needs Lone.moving",
+            "`Lone` takes its text from another component, expected a component with a text of its own",
+            "begin it with `each Arm:`, or write it in the robot",
+        ),
+    ],
+)
+def test_an_assumption_of_a_library_that_no_import_could_have(assumption: str, message: str, hint: str) -> None:
+    text = LIBRARY.replace("ASSUMPTION", assumption)
+    reading = read("Arms.rscd", documents=Documents({"Arms.rscd": text}))
+    findings = [*reading.findings, *check(reading.base, reading.findings)]
+    assert [(finding.message, finding.hint) for finding in findings] == [(message, hint)]
 
 
 def test_assumptions_of_a_library_are_sorted_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
