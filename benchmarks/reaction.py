@@ -83,7 +83,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--seconds", type=float, default=300, help="how long the costs are measured")
     parser.add_argument("--rounds", type=int, default=9, help="how often it is measured what a look costs")
     parser.add_argument("--keep", type=Path, help="a folder for what is built")
-    parser.add_argument("--machine", default="two shared cores", help="what the page says of the machine")
+    parser.add_argument("--machine", default="two shared cores", help="description of the machine for the page")
     return parser.parse_args()
 
 

@@ -87,7 +87,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--limit", type=int, default=60, help="the seconds of the processor that a robot may take")
     parser.add_argument("--jobs", type=int, default=2, help="how many are measured at a time")
     parser.add_argument("--output", type=Path, help="a folder for the page, the plots and what is kept")
-    parser.add_argument("--machine", default="two shared cores", help="what the page says of the machine")
+    parser.add_argument("--machine", default="two shared cores", help="description of the machine for the page")
     return parser.parse_args()
 
 

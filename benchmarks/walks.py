@@ -70,7 +70,7 @@ def main() -> int:
     parser.add_argument("--sizes", nargs="+", type=int, default=SIZES)
     parser.add_argument("--limit", type=int, default=600, help="the seconds of the processor that a model may take")
     parser.add_argument("--output", type=Path, help="a folder for the page and what is kept")
-    parser.add_argument("--machine", default="two shared cores", help="what the page says of the machine")
+    parser.add_argument("--machine", default="two shared cores", help="description of the machine for the page")
     parser.add_argument("--one", nargs=3, metavar=("FAMILY", "N", "FOLDER"), help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.one:

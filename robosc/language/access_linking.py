@@ -140,9 +140,9 @@ class AccessLinker(NameFindings):
     ) -> None:
         """Report a fleet without an index, and an index between the name of another component and its member."""
         index = element.index
-        stated = self._nearest(element, rsc.StatedDefinition)
-        template = None if stated is None else self.file.references.get(stated, {}).get("template")
-        if template is not None and stated is not None and stated.template is None and template.text == name.text:
+        each = self._nearest(element, rsc.StatedDefinition)
+        template = None if each is None else self.file.references.get(each, {}).get("template")
+        if template is not None and each is not None and each.template is None and template.text == name.text:
             return  # The name behind `each` is reported.
         if component.first is not None and index is None:
             choice = first_instance(component)

@@ -415,12 +415,12 @@ def _condition_first(tokens: Tokens, index: int, expectations: Collection[str], 
     name = tokens[_reference_end(tokens, event + 3)]
     moved = (
         (tokens[index].start, tokens[event].start, ""),
-        (name.end, name.end, f" {_written(tokens, index, event)}"),
+        (name.end, name.end, f" {_joined_text(tokens, index, event)}"),
     )
     return Repair(hint_text, elsewhere=moved, is_offered=True)
 
 
-def _written(tokens: Tokens, first: int, after: int) -> str:
+def _joined_text(tokens: Tokens, first: int, after: int) -> str:
     """Return a range of tokens as the text has it, with one blank in place of several."""
     parts = [tokens[first].text]
     for at in range(first + 1, after):

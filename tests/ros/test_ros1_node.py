@@ -120,7 +120,7 @@ def test_a_renaming_around_the_launch_file_holds(graph: Graph) -> None:
         ("_service_timeout_ms:=-1", "service_timeout_ms is -1, not between 1 and 86400000"),
         ("_watchdog_ms/stop:=-1", "watchdog_ms/stop is -1, not between 0 and 86400000"),
         ("_log_level:=loud", "log_level is loud, not debug, info, warn, error or fatal"),
-        ("_event_log:=/no/such/folder/log", "the event log /no/such/folder/log can't be written"),
+        ("_event_log:=/no/such/folder/log", "the event log /no/such/folder/log cannot be written"),
     ],
 )
 def test_a_wrong_parameter_keeps_the_node_from_starting(graph: Graph, parameter: str, complaint: str) -> None:

@@ -139,7 +139,7 @@ def _types(graph: rosgraph.RosGraph) -> Iterator[Diagnostic]:
         first = types.setdefault(end.topic.removeprefix("/"), kind)
         if kind != first:
             hint = "use another topic, or one type for all communications on this topic"
-            yield _error(end, f'"{end.topic}" is a topic of {first} already, and can\'t be one of {kind}', hint)
+            yield _error(end, f'"{end.topic}" is a topic of {first} already, and cannot be one of {kind}', hint)
 
 
 def _fields(graph: rosgraph.RosGraph) -> Iterator[tuple[ex.Located, str]]:

@@ -132,7 +132,7 @@ def modulo(value: int, divisor: int) -> int:
 def _rounded(nearest: Callable[[float], int]) -> Callable[[float], int]:
     def compute(value: float) -> int:
         if math.isnan(value):
-            raise UnreadableError("NaN can't be rounded")
+            raise UnreadableError("NaN cannot be rounded")
         return nearest(max(float(_LEAST), min(float(_MOST), value)))
 
     return compute

@@ -68,7 +68,7 @@ def _run(
         try:
             handler, settings = make(node, log)
         except OSError as error:
-            raise StartError(f"the event log {error.filename} can't be written: {error.strerror}") from None
+            raise StartError(f"the event log {error.filename} cannot be written: {error.strerror}") from None
         reports = ["state", "definition"] if configuration.publish_state_information else []
         node.open_reports([*reports, "blocked"] if isinstance(handler, Layer) else reports)
         if settings.parameters.get("diagnostics_ms"):

@@ -130,7 +130,7 @@ class Moments:
     def _add_told(self, time: float, running: Mapping[str, int], report: ReportedMoment) -> None:
         """Add a moment that a node has reported."""
         entries = (
-            {"words": "what the node says"}
+            {"words": "state of the node"}
             if report.event is None
             else {"event": report.event, "words": self.describe_event(report.event)}
         )

@@ -83,7 +83,7 @@ def test_nothing_against_a_good_model(tmp_path: Path) -> None:
         ),
         (
             {"more": 'incoming message tell with identifier: "base/odometry", type: boolean'},
-            'cart.rscd:7: "base/odometry" is a topic of nav_msgs/Odometry already, and can\'t be one of std_msgs/Bool',
+            'cart.rscd:7: "base/odometry" is a topic of nav_msgs/Odometry already, and cannot be one of std_msgs/Bool',
         ),
         ({"set": "parameter period_ms: boolean = true"}, "cart.rscd:4: the node has a parameter period_ms of its own"),
         ({"set": "parameter log_level: boolean = true"}, "cart.rscd:4: the node has a parameter log_level of its own"),

@@ -219,7 +219,7 @@ void a_log_that_can_not_be_written_is_refused() {
     EventLog log("/no/such/folder/log");
     CHECK(false);
   } catch (const std::runtime_error& error) {
-    CHECK(error.what() == std::string("the event log /no/such/folder/log can't be written"));
+    CHECK(error.what() == std::string("the event log /no/such/folder/log cannot be written"));
   }
 }
 

@@ -132,7 +132,7 @@ def test_no_number_is_sent(scout: Scout) -> None:
         assert scout.events(since, "message_move.c_trigger") == []
     scout.until_says(before, "move is withheld: its linear.x would not be finite")
     scout.until_diagnosed(
-        "Platform", "has no states; move is withheld", request_to_move="held back: its data can't be sent"
+        "Platform", "has no states; move is withheld", request_to_move="held back: its data cannot be sent"
     )
     # The node sends the configured command instead, once, although a requirement forbids it.
     assert [entry["event"] for entry in scout.log(before) if entry["direction"] == "outside"] == [

@@ -105,7 +105,7 @@ def test_provided_data_that_cannot_be_read_is_withheld(world: World) -> None:
     world.port.sent.clear()
     world.wait(0.3)
     assert world.port.sent == []
-    assert {text for text in world.port.said if "withheld" in text} == {"drive is withheld: NaN can't be rounded"}
+    assert {text for text in world.port.said if "withheld" in text} == {"drive is withheld: NaN cannot be rounded"}
 
 
 def test_an_element_that_is_not_finite_withholds_a_command(world: World) -> None:
@@ -121,7 +121,7 @@ def test_an_internal_event_waits_until_it_can_be_read(world: World) -> None:
     world.hear("divide", data=math.nan)
     world.hear("step")
     assert variables(world)["state"] == "counting"
-    assert "component_Lidar.c_tau1: NaN can't be rounded" in [text for text in world.port.said if "tau" in text]
+    assert "component_Lidar.c_tau1: NaN cannot be rounded" in [text for text in world.port.said if "tau" in text]
 
 
 def test_an_answer_that_cannot_be_read_is_an_error_and_an_error_happens_anyway(world: World) -> None:
@@ -132,5 +132,5 @@ def test_an_answer_that_cannot_be_read_is_an_error_and_an_error_happens_anyway(w
     assert len(logged(world, "service_dock.u_response")) == 0
     assert len(logged(world, "service_dock.u_error")) == 1
     assert variables(world)["variables"]["whole"] == 0
-    assert "/dock: NaN can't be rounded" in world.port.said
+    assert "/dock: NaN cannot be rounded" in world.port.said
     assert [text for text in world.port.said if "u_error" in text] == []

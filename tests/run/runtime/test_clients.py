@@ -425,7 +425,7 @@ def test_a_goal_that_can_not_be_sent_is_an_error() -> None:
 
     bench.port.send_goal = broken  # type: ignore[method-assign]
     bench.do(lambda: bench.client.start("goal"))
-    assert bench.told == [("error", Failure.UNAVAILABLE, "the goal can't be sent: torn", None)]
+    assert bench.told == [("error", Failure.UNAVAILABLE, "the goal cannot be sent: torn", None)]
 
 
 @pytest.mark.parametrize(

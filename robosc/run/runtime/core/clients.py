@@ -253,7 +253,7 @@ class ActionClient:
         try:
             self._goal = self._port.send_goal(self._client, goal, self._handlers(number))
         except Exception as error:  # any exception of the middleware means that the goal was not sent
-            why = f"the goal can't be sent: {error}"
+            why = f"the goal cannot be sent: {error}"
             fail = lambda: self._fail(Failure.UNAVAILABLE, why)  # noqa: E731
             self._event_loop.post(lambda: self._if_current(number, fail))
 

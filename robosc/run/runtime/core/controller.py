@@ -277,7 +277,7 @@ class Controller(EventHandler):
             return "the node is not active"
         if self._halted:
             return "an assumption is violated" if self._violations.stopped else "a topic is silent"
-        return "its data can't be sent" if event_name(event) in self._withheld else None
+        return "its data cannot be sent" if event_name(event) in self._withheld else None
 
     def _faults(self, parts: Parts) -> list[str]:
         silent = [topic for topic in parts.topics if topic in self._watchdogs and self._watchdogs[topic].tripped]

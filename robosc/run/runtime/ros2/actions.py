@@ -189,7 +189,7 @@ class Ros2ActionProxy(ActionProxy[_Goal]):
             self._accept(goal)
             if not goal.result:
                 self._send_cancel(goal)
-                self._give_up(goal, Failure.LOST, "its result can't be asked for")
+                self._give_up(goal, Failure.LOST, "its result cannot be requested")
 
     def _on_feedback(self, message: Message) -> None:
         if self._receive_feedback(uuid_bytes(message.goal_id), message.feedback):

@@ -233,7 +233,7 @@ class ArrayReader {
   static bool is_nan(const Integer& /*number*/) { return false; }
 
   Integer whole(double number) {
-    if (std::isnan(number)) fail("NaN can't be rounded");
+    if (std::isnan(number)) fail("NaN cannot be rounded");
     constexpr double least = std::numeric_limits<std::int32_t>::min(), most = std::numeric_limits<std::int32_t>::max();
     return std::isnan(number) ? 0 : static_cast<std::int32_t>(std::clamp(number, least, most));
   }

@@ -46,7 +46,7 @@ inline std::string default_log(std::string node, const std::string& package) {
 class LineWriter {
  public:
   explicit LineWriter(const std::string& path) : file_(path, std::ios::app) {
-    if (!file_) throw std::runtime_error("the event log " + path + " can't be written");
+    if (!file_) throw std::runtime_error("the event log " + path + " cannot be written");
     thread_ = std::thread([this] { work(); });
   }
 

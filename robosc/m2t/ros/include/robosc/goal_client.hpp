@@ -197,7 +197,7 @@ class GoalClient {
       phase_ = Phase::sent;
       if (!send()) {
         phase_ = Phase::waiting;
-        unsent_ = "the goal can't be sent";
+        unsent_ = "the goal cannot be sent";
       }
     } else if (busy() && phase_ != Phase::waiting && is_gone()) {
       fail(Failure::lost, "the server is gone");

@@ -148,7 +148,7 @@ class ActionProxy : public GoalProxy<Countdown, typename Type::Goal, typename Ty
     this->accept();
     if (asked) return;
     send_cancel();
-    this->fail(Failure::lost, "its result can't be asked for");
+    this->fail(Failure::lost, "its result cannot be requested");
   }
 
   void on_feedback(const FeedbackMessage& message) {

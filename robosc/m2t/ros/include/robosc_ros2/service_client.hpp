@@ -56,7 +56,7 @@ class ServiceClient final : public CallClient<Countdown, typename Type::Response
       pending_ = client_->async_send_request(request_, answered).request_id;
       missing_ = {Failure::timeout, "no answer"};
     } catch (const std::exception&) {
-      missing_ = {Failure::failed, "the call can't be sent"};
+      missing_ = {Failure::failed, "the call cannot be sent"};
       search_.start();
     }
   }

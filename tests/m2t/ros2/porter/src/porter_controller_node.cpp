@@ -480,7 +480,7 @@ class Controller : public ControllerNode<rclcpp::Node> {
   std::string verdict(porter_event event, const BlockReasons& reasons) const {
     if (!porter_enabled(&supervisor_, event)) return reasons.sentence();
     if (held()) return stopping_ ? "held back: the node is not active" : "held back: a topic is silent";
-    if (withheld_.count(event) > 0) return "held back: its data can't be sent";
+    if (withheld_.count(event) > 0) return "held back: its data cannot be sent";
     return "allowed";
   }
 
