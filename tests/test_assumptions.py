@@ -320,6 +320,30 @@ def test_unused() -> None:
     assert len(unused(SHOP.replace("  assume A2", "  assume A0: done needs M1.busy\n  assume A2"))) == 2
 
 
+EACH = """robot Each {
+  component Machine(ns: string) {
+    incoming message start with identifier: ns + "/start", type: none
+    outgoing message done with identifier: ns + "/done", type: none
+    behaviour {
+      initial marked state idle { on request to start goto busy }
+      state busy { on response from done goto idle }
+    }
+  }
+  component M[1..3] is Machine("/m" + text(number))
+  assume A: each Machine: Machine.done needs CONDITION
+  requirement M[3].start needs M[3].busy
+}"""
+
+
+def test_unused_with_each() -> None:
+    """One of the instances is enough to need the assumption."""
+    assert unused(EACH.replace("CONDITION", "Machine.busy")) == []
+    assert unused(EACH.replace("CONDITION", "Machine.busy or M[1].idle or M[2].idle")) == []
+    [message] = unused(EACH.replace("CONDITION", "Machine.busy or Machine.idle"))
+    assert message.startswith("`assume A[M1]: M1.done needs M1.busy or M1.idle` excludes nothing")
+    assert message.endswith("; the same holds for the other 2 instances")
+
+
 def command(*arguments: str, text: str = "") -> Any:
     return CliRunner().invoke(main, list(arguments), input=text)
 

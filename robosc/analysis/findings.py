@@ -8,7 +8,16 @@ from typing import TYPE_CHECKING, Any
 from robosc.analysis.blocking_in_words import counterexample_in_words, way_out
 from robosc.analysis.causes import causes, with_causes
 from robosc.analysis.observations import Forbidden
-from robosc.analysis.wording import condition, forbid, in_words, join_with_and, name, quote_requirements, words
+from robosc.analysis.wording import (
+    condition,
+    forbid,
+    in_words,
+    join_with_and,
+    name,
+    quote_requirements,
+    reference,
+    words,
+)
 from robosc.base.diagnostics import Diagnostic, Severity, in_order
 from robosc.model import sct
 from robosc.model.places import place
@@ -161,7 +170,7 @@ class _Findings:
             why, hint = _guard(event), "correct its guard or the transitions to its state"
         else:
             why = _not_requested(observed)
-            hint = f"write `on request to {name(plant)}` in a state that can be reached"
+            hint = f"write `on request to {reference(plant)}` in a state that can be reached"
         required = () if observed.kept_away else observed.requirements
         at_fault = required or (observed.counterexample and observed.counterexample.violated) or ()
         return _finding(
@@ -247,7 +256,7 @@ class _Findings:
             "provide-gap",
             f"`{name(plant)}` can be {done} without data, where no condition of its `provide` statements holds"
             + _where(observed.example, [*elements, *self._asking(observed.event)]),
-            f"add `provide {name(plant)} with ...` without a condition, or a requirement that excludes this",
+            f"add `provide {reference(plant)} with ...` without a condition, or a requirement that excludes this",
         )
 
     def shared_topic_conflict(self, observed: SharedTopicConflict) -> Diagnostic:
@@ -266,22 +275,29 @@ class _Findings:
 
     @staticmethod
     def unrestricted_call(event: sct.Event) -> Diagnostic:
-        action = name(plant_of(event))
+        plant = plant_of(event)
+        action = reference(plant)
         return _finding(
             event,
             "unrestricted-call",
-            f"`{action}` is {_DONE[plant_of(event).kind]} again and again, as soon as it has ended: no requirement "
+            f"`{name(plant)}` is {_DONE[plant.kind]} again and again, as soon as it has ended: no requirement "
             "restricts it, and no component waits for its request",
             f"add `requirement {action} needs ...`, or `on request to {action}` in the states that allow it",
         )
 
-    @staticmethod
-    def unused_assumption(plant: sct.Plant) -> Diagnostic:
+    def unused_assumption(self, plant: sct.Plant) -> Diagnostic:
+        alike = [
+            other
+            for other in self._model.plants
+            if other.kind == sct.PlantKind.assumption and plant.source is not None and other.source == plant.source
+        ]
+        others = max(len(alike) - 1, 0)
+        instances = "instance" if others == 1 else f"{others} instances"
         return _finding(
             plant,
             "assumption-unused",
             f"`{plant.text}` excludes nothing: wherever its events can come in the supervised robot, its condition"
-            " holds",
+            f" holds{f'; the same holds for the other {instances}' if others else ''}",
             "remove it, or correct its condition",
         )
 

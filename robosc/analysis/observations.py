@@ -187,8 +187,8 @@ class Observations:
     """All observations of a supervisor, each kind in the order of the model.
 
     `unrestricted_calls` are triggers of services and actions that can happen, have no requirement, and involve no other
-    plant than their own. `unused_assumptions` are those that none of their events could violate. `counterexamples`
-    explain events that synthesis restricts; large models may lack some of them.
+    plant than their own. `unused_assumptions` are those that none of their events could violate, one for each text.
+    `counterexamples` explain events that synthesis restricts; large models may lack some of them.
     """
 
     never_enabled: tuple[NeverEnabled, ...]
@@ -432,11 +432,19 @@ class Observer:
                     yield UnreachableState(location, tuple(hindrances))
 
     def _unused_assumptions(self) -> Iterator[sct.Plant]:
-        system = self._system
-        for assumption in assumptions(system.model):
-            events = dict.fromkeys(edge.event for location in assumption.locations for edge in location.edges)
-            if not any(self._could_violate(system.relations[event], assumption).satisfiable() for event in events):
-                yield assumption
+        """Yield the first assumption of each text, such as one with `each`, of which none excludes anything."""
+        by_text: dict[object, list[sct.Plant]] = {}
+        for plant in assumptions(self._system.model):
+            by_text.setdefault(plant.source or plant, []).append(plant)
+        for alike in by_text.values():
+            if not any(map(self._excludes, alike)):
+                yield alike[0]
+
+    def _excludes(self, assumption: sct.Plant) -> bool:
+        """Return whether one of its events could come in a state in which an assumption forbids it."""
+        events = dict.fromkeys(edge.event for location in assumption.locations for edge in location.edges)
+        relations = self._system.relations
+        return any(self._could_violate(relations[event], assumption).satisfiable() for event in events)
 
     def _could_violate(self, relation: EventRelation, assumption: sct.Plant) -> Diagram:
         """Return the controlled states in which all plants but the assumption allow an event."""

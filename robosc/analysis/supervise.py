@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -10,11 +11,12 @@ from robosc.analysis.blocking_in_words import counterexample_in_words, describe_
 from robosc.analysis.findings import findings_of
 from robosc.analysis.observations import Observations, Observer, Weight
 from robosc.analysis.system import SynthesizedSystem
-from robosc.analysis.wording import forbid, in_words, name
+from robosc.analysis.wording import forbid, in_words, name, reference
 from robosc.base.diagnostics import Diagnostic, ModelError, Severity, has_errors
 from robosc.model import sct
 from robosc.model.places import place
 from robosc.model.semantics.edges import edges_from
+from robosc.model.semantics.naming import escape_keyword
 from robosc.model.semantics.roles import plant_of
 from robosc.synthesis import MEMORY, Phase, Solution, Statistics, Synthesis, solve
 
@@ -70,21 +72,39 @@ def _place(model: sct.SupervisoryControlModel, reason: BlockReason) -> tuple[str
 
 def _condition(model: sct.SupervisoryControlModel, reason: BlockReason) -> str | None:
     """Return the condition that an automaton lacks if it follows a message that its component ignores."""
-    events = [requirement.event for requirement in reason.violated if isinstance(requirement, sct.Requirement)]
-    for event in events:
+    violated = [requirement for requirement in reason.violated if isinstance(requirement, sct.Requirement)]
+    shared = Counter(name(plant).rpartition(".")[2] for plant in model.plants if plant.kind == sct.PlantKind.message)
+    for requirement in violated:
+        event = requirement.event
         component, _, message = name(plant_of(event)).rpartition(".")
         for plant in model.plants if plant_of(event).kind == sct.PlantKind.message else ():
             moved = [state for state in plant.locations if any(_does(edge, event) for edge in edges_from(state))]
             here = reason.state.get(plant.name)
             if plant.kind == sct.PlantKind.behaviour and name(plant) == component and moved:
-                states = " or ".join(f"{component}.{state.name}" for state in moved)
+                owner = reference(plant)
+                states = " or ".join(f"{owner}.{escape_keyword(state.name)}" for state in moved)
                 if here not in {state.name for state in moved}:
-                    heard = f"on response from {message}"
-                    return (
+                    own_name = f"{owner}.{escape_keyword(message)}"
+                    heard = f"on response from {own_name if shared[message] > 1 else escape_keyword(message)}"
+                    way = (
                         f"`{component}` ignores it in `{here}`: in the automaton of the requirement, write "
                         f"`if {states}` after `{heard}`, and add `{heard} if !({states})` to each state"
                     )
+                    template = f", with the name of the template for `{owner}`"
+                    return way + template if _is_of_template(requirement, model) else way
     return None
+
+
+def _is_of_template(requirement: sct.Requirement, model: sct.SupervisoryControlModel) -> bool:
+    """Return whether the automaton of a requirement has one text for instances that each have their own events."""
+    automaton, event = requirement.automaton, requirement.event
+    copies = [plant for plant in model.plants if plant.kind == sct.PlantKind.requirement and plant is not automaton]
+    return automaton is not None and any(
+        plant.source == automaton.source
+        and all(edge.event is not event for state in plant.locations for edge in state.edges)
+        for plant in copies
+        if plant.source is not None
+    )
 
 
 def _does(edge: sct.Edge, event: sct.Event) -> bool:

@@ -41,6 +41,11 @@ def name(plant: sct.Plant) -> str:
     return plant.origin or plant.name
 
 
+def reference(plant: sct.Plant) -> str:
+    """Return the text that refers to a component or its communication in the robot model."""
+    return plant.reference or name(plant)
+
+
 def words(event: sct.Event) -> str:
     """Return an event in words, such as `request to Platform.move`.
 

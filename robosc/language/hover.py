@@ -13,8 +13,8 @@ from robosc.model import expression as ex
 from robosc.model import robosc as rsc
 from robosc.model.semantics.communication import carrying_events, events, section_of
 from robosc.model.semantics.expansion import constant_value
-from robosc.model.semantics.instances import fleet_numbers
-from robosc.model.semantics.naming import enumeration, instance_text
+from robosc.model.semantics.instances import fleet_numbers, instance_text
+from robosc.model.semantics.naming import enumeration
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -8,7 +8,8 @@ from robosc.base.diagnostics import Repair
 from robosc.language.surroundings import Surroundings
 from robosc.language.syntax_messages import did_you_mean
 from robosc.model.semantics.expansion import constant_value
-from robosc.model.semantics.naming import enumeration, escape_keyword, instance_text
+from robosc.model.semantics.instances import instance_text
+from robosc.model.semantics.naming import enumeration, escape_keyword
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping

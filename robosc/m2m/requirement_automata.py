@@ -55,6 +55,8 @@ class RequirementAutomaton:
                 location = self._location(state.name, initial=state.initial, marked=unmarked or state.marked)
                 location.source = state.source
                 self.trace.requirement_locations[self._within, state] = location
+                # An automaton with `each` in the template's own text is read for other instances, too.
+                self.trace.requirement_locations.setdefault((None, state), location)
         elif isinstance(element, robosc.OrderRequirement):
             self._location("waiting", initial=True)
             self._location("ready")

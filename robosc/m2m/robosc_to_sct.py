@@ -27,7 +27,7 @@ from robosc.model.semantics.durations import UNITS, bounds, milliseconds, set_mi
 from robosc.model.semantics.expansion import constant_value
 from robosc.model.semantics.inputs import Data, FailureReason
 from robosc.model.semantics.instances import Instance, Instances, InstanceVariable, PortInstance, Statement
-from robosc.model.semantics.naming import Names
+from robosc.model.semantics.naming import Names, escape_keyword
 from robosc.model.semantics.printing import RoboscPrinter, conjunction, disjunction
 from robosc.model.semantics.walks import copy_tree, fold, with_operands
 
@@ -99,6 +99,7 @@ class _RoboscToSct:
         self.expressions = SctExpressions(self.trace)
         self.print = RoboscPrinter()
         self.plant_names = Names()
+        self.fleet_texts = self.instances.fleet_texts
         self.input_sources: dict[PortInstance, list[InputSource]] = {}
         for carried in self.trace.cone.data:
             self.input_sources.setdefault(carried.port, []).append(carried)
@@ -138,6 +139,8 @@ class _RoboscToSct:
             f"{instance.name}.{communication.name}",
             communication.source,
         )
+        if instance.name in self.fleet_texts:
+            plant.reference = f"{self.fleet_texts[instance.name]}.{escape_keyword(communication.name)}"
         plant.topic = instance.topic(communication)
         self.trace.plants[port] = plant
         self.trace.origins[plant] = communication
@@ -222,6 +225,7 @@ class _RoboscToSct:
         assert instance.automaton is not None
         kind = sct.PlantKind.behaviour
         plant = self.plant(f"component_{instance.name}", kind, instance.name, instance.component.source)
+        plant.reference = self.fleet_texts.get(instance.name)
         self.trace.behaviours[instance] = plant
         self.trace.origins[plant] = instance.component
         names = Names()

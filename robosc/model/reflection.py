@@ -42,6 +42,18 @@ def contents(element: Any) -> Iterator[tuple[str, Any]]:
             yield f"@{name}", value
 
 
+def place_or_refer(element: Any, name: str, child: Any) -> None:
+    """Put a child into an element. A child that is in another element stays there, and the element refers to it.
+
+    An expression can be large and the same in many places. Only readers that do not ask for its container may get it.
+    """
+    if child.eContainer() is None:
+        setattr(element, name, child)
+    else:
+        getattr(element, name)  # creates the slot
+        element.__dict__[name]._value = child  # noqa: SLF001 - `setattr` would take it out of its container
+
+
 def tree(root: Any) -> Iterator[tuple[str, Any]]:
     """Iterate over an element and all elements below it in preorder, each with its fragment step, "" for the root.
 

@@ -24,6 +24,7 @@ class Plant(expression.NamedElement):
     """An automaton with variables. The guards of a location's edges with one event exclude each other. The guards of an uncontrollable event from CIF may overlap; then each enabled edge is possible."""
     kind: PlantKind
     origin: str | None
+    reference: str | None
     text: str | None
     topic: str | None
     events: MutableSequence[Event]
@@ -31,7 +32,7 @@ class Plant(expression.NamedElement):
     variables: MutableSequence[DiscreteVariable]
     locations: MutableSequence[Location]
     edges: MutableSequence[Edge]
-    def __init__(self, *, kind: PlantKind | None = ..., origin: str | None = ..., text: str | None = ..., topic: str | None = ..., events: Iterable[Event] = ..., inputs: Iterable[Input] = ..., variables: Iterable[DiscreteVariable] = ..., locations: Iterable[Location] = ..., edges: Iterable[Edge] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
+    def __init__(self, *, kind: PlantKind | None = ..., origin: str | None = ..., reference: str | None = ..., text: str | None = ..., topic: str | None = ..., events: Iterable[Event] = ..., inputs: Iterable[Input] = ..., variables: Iterable[DiscreteVariable] = ..., locations: Iterable[Location] = ..., edges: Iterable[Edge] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class PlantKind:
     """message, service, action: communication (thesis listings 5.1 to 5.3); behaviour: a component's automaton; data: the provide statements of one communication (listing 5.4); requirement: an automaton that observes events and never blocks one. The restrictions of a requirement automaton are requirements on its locations. The state count of the plants does not include its locations. assumption: a plant with one location that permits events from the robot only where a condition holds; the node checks it."""

@@ -158,6 +158,45 @@ def test_a_message_that_its_component_ignores() -> None:
     assert "never-enabled" not in {found.rule for found in findings(mended)}
 
 
+STATION = """robot Stations {
+  component Station(ns: string) {
+    outgoing message done with identifier: ns + "/done", type: none
+    incoming message enter with identifier: ns + "/enter", type: none
+    behaviour {
+      initial marked state outside { on request to enter goto inside }
+      state inside { on response from done goto outside }
+    }
+  }
+  component Cell[1..2] is Station("/cell" + text(number))
+  requirement EACH automaton {
+    initial marked state free { on request to NAME.enter goto taken }
+    state taken { on response from NAME.done goto free }
+  }
+}"""
+
+
+@pytest.mark.parametrize(("each", "written"), [("", "Cell[1]"), ("Turns: each Station:", "Station")])
+def test_a_message_that_an_instance_ignores(each: str, written: str) -> None:
+    """The texts of the hint are texts of the model, which name an instance as `Cell[1]`."""
+    model = STATION.replace("EACH", each).replace("NAME", written)
+    with pytest.raises(EmptySupervisorError) as refused:
+        findings(model)
+    (finding,) = refused.value.diagnostics
+    assert finding.hint is not None
+    [condition, heard, ignored] = [
+        next(part for part in finding.hint.split("`") if part.startswith(start))
+        for start in ("if ", "on response from Cell[1].done", "on response from Cell[1].done if ")
+    ]
+    assert finding.hint.endswith(
+        "with the name of the template for `Cell[1]`; `robosc explain --why-empty` explains why"
+    ) == bool(each)
+    condition, heard, ignored = (part.replace("Cell[1]", written) for part in (condition, heard, ignored))
+    mended = model.replace(heard, f"{heard} {condition}").replace(
+        " }\n    state taken {", f" {ignored} }}\n    state taken {{ {ignored}"
+    )
+    assert "never-enabled" not in {found.rule for found in findings(mended)}
+
+
 def test_a_guard_of_a_component_is_named() -> None:
     model = robosc.to_sct(robosc.load(text=GUARDED))
     found = explore(model, emptiness)

@@ -7,9 +7,9 @@ import robosc
 from robosc.m2t.models import Models
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-#: Every model, by its name.
+#: Every model of one robot, by its name; `test_fleet.py` is about the fleet.
 #: The workspaces contain copies of one of them.
-MODELS = {path.stem: path for path in sorted(EXAMPLES.rglob("*.rscd")) if "workspace" not in path.parts}
+MODELS = {path.stem: path for path in sorted(EXAMPLES.rglob("*.rscd")) if not {"workspace", "fleet"} & {*path.parts}}
 #: Robots of the second edition, with too many states to enumerate.
 SHOWCASES = ["sprayer", "warehouse_robot"]
 #: All examples: folders with a page.

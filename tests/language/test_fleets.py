@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,13 +14,16 @@ import robosc
 from robosc.analysis.verify import validate_model
 from robosc.analysis.verify.verdict import Outcome
 from robosc.base.ros_types import RosTypes
+from robosc.language.checks import check
 from robosc.language.completion import proposals
 from robosc.language.configuration import Configuration
 from robosc.language.hover import describe
 from robosc.language.reading import read
 from robosc.language.semantic_tokens import classify
 from robosc.language.text import Documents
+from robosc.model import robosc as robosc_model
 from robosc.model import sct
+from robosc.model.semantics import instances as semantics
 from robosc.tools.cli import main
 from tests.language.second_edition import errors, requirements, running, supervised
 
@@ -121,6 +125,54 @@ def test_output_names_instances_without_brackets() -> None:
     model = supervised(robot(FLEET, "requirement Cell[2].enter needs Cell[1].outside"))
     assert {"component_Cell1", "message_Cell2_enter"} <= {plant.name for plant in model.plants}
     assert [requirement.text for requirement in model.requirements] == ["requirement Cell2.enter needs Cell1.outside"]
+
+
+@pytest.mark.parametrize("number", [1, 3])
+def test_each_fault_of_a_fleet_is_reported_once(tmp_path: Path, number: int) -> None:
+    """Two faults are two findings, also at one line, and a fault of several instances is one."""
+    (tmp_path / "Lib.rscd").write_text(
+        """library Lib {
+          component Arm {
+            service grip1 with identifier: "/grip", request: none, response: none
+            service grip2 with identifier: "/drop", request: none, response: none
+            outgoing message ok with identifier: "/ok", type: none
+            behaviour {
+              initial marked state still { on request to grip1 goto closing on request to grip2 goto opening }
+              state closing { on response from ok goto still }
+              state opening { on response from ok goto still }
+            }
+          }
+        }"""
+    )
+    (tmp_path / "robot.rscd").write_text(
+        f"""robot R {{
+          component Hand[1..{number}] from Lib import Arm
+            with {{ grip1: "/g" + text(number), grip2: "/d" + text(number), ok: "/o" + text(number) }}
+          requirement each Arm: {{ Arm.grip1, Arm.grip2 }} needs Arm.still
+        }}"""
+    )
+    messages = [finding.message for finding in robosc.check(robosc.load(tmp_path / "robot.rscd"))]
+    starts = ["`Hand1` goes to `closing` with the request to `grip1`", "`Hand1` goes to `opening` with the request"]
+    assert [message[: len(start)] for message, start in zip(messages, starts, strict=True)] == starts
+
+
+def test_a_topic_of_several_instances_is_reported_once() -> None:
+    """The topics of the instances differ in their number."""
+    others = " ".join(f'component Other{at} is Station("/cell{at}")' for at in (1, 2, 3))
+    findings = robosc.check(robosc.load(text=robot(others, FLEET)))
+    messages = [finding.message for finding in findings if finding.rule == "unique-topic"]
+    names = [f"`done` of `Cell{at}` and `done` of `Other{at}` share the topic `/cell{at}/done`" for at in (1, 2, 3)]
+    assert [any(name in message for message in messages) for name in names] == [True, True, True]
+    twins = 'component Pair[1..3] is Station("/cell" + text(number))'
+    findings = robosc.check(robosc.load(text=robot(FLEET, twins)))
+    [message] = [finding.message for finding in findings if finding.rule == "unique-topic"]
+    assert "`done` of `Pair1` and `done` of `Cell1` share the topic `/cell1/done`" in message
+
+
+@pytest.mark.parametrize("uses", ["component Cell[1..300] is Station(ns: text(number))", WRITTEN])
+def test_a_name_of_a_template_is_reported_once(uses: str) -> None:
+    lone = "component Lone { incoming message enter with type: none }"
+    assert [rule for rule, _ in errors(robot(lone, uses))] == ["unique-communication"]
 
 
 def test_an_index_is_a_constant_expression() -> None:
@@ -261,6 +313,34 @@ def test_automata_of_each_in_an_inner_quantifier() -> None:
     assert outcomes(text) == {Outcome.PROVED}
 
 
+OWN = """requirement D: each Station: Station.enter needs (count Station: Station.inside) < 2 and Station.outside
+    requirement A: each Station: automaton {
+      initial marked state first { on request to Station.enter goto second }
+      state second { on request to enter goto first }
+    }
+    requirement each Station: enter needs A.first or (any Station: A.second)
+    requirement enter needs A[Cell[2]].first or A[Cell[1]].second
+    property P: each Station: reachable Station.inside
+    assume each Station: Station.done needs Station.inside"""
+
+
+def test_each_of_a_template_in_its_own_text() -> None:
+    """There, the template is the instance whose text it is: `each` writes the definition once for each instance."""
+    own = robot(FLEET).replace("behaviour {", f"{OWN} behaviour {{", 1)
+    model = supervised(own)
+    assert [part.text for part in model.requirements if part.name and "D" in part.name] == [
+        f"requirement Cell{at}.D[Cell{at}]: Cell{at}.enter needs (count Station: Station.inside) < 2"
+        f" and Cell{at}.outside"
+        for at in (1, 2, 3)
+    ]
+    assert [part.text for part in model.properties] == [
+        f"property Cell{at}.P[Cell{at}]: reachable Cell{at}.inside" for at in (1, 2, 3)
+    ]
+    assert len([part for part in stated(model) if not isinstance(part, sct.Requirement)]) == 6
+    assert len(model.requirements) == 9
+    assert outcomes(own) == {Outcome.PROVED}
+
+
 def test_each_in_a_component() -> None:
     """A requirement in a component has the name of the component before its own."""
     door = """component Door {
@@ -297,6 +377,125 @@ def test_each_stays_a_name() -> None:
     assert errors(text.replace("requirement each:", "requirement")) == []
 
 
+def test_each_with_an_inner_quantifier_costs_one_expansion() -> None:
+    """The written-out requirements have the expanded quantifier in common."""
+    text = "requirement each Station: Station.enter needs Station.outside and (count Station: Station.inside) < 2"
+
+    def cost(number: int) -> int:
+        steps = 0
+
+        def counted(_frame: object, event: str, _argument: object) -> None:
+            nonlocal steps
+            steps += event == "call"
+
+        model = robosc.load(text=robot(f'component Cell[1..{number}] is Station("/cell" + text(number))', text))
+        before = sys.getprofile()
+        sys.setprofile(counted)
+        try:
+            robosc.check(model)
+        finally:
+            sys.setprofile(before)
+        return steps
+
+    cost(2)  # load modules once, before counting
+    short, long = cost(20), cost(80)
+    assert long < 7 * short
+
+
+LIBRARY = """library Arms {
+  component Arm(ns: string) {
+    incoming message move with identifier: ns + "/move", type: none
+    outgoing message ok with identifier: ns + "/ok", type: none
+    behaviour {
+      initial marked state still { on request to move goto moving }
+      state moving { on response from ok goto still }
+    }
+  }
+  component Gate {
+    outgoing message opened with type: none
+    behaviour { initial marked state free { on response from opened } }
+  }
+  component Lone is Arm("/lone")
+  ASSUMPTION
+}"""
+
+
+def test_each_of_a_template_in_a_library(tmp_path: Path) -> None:
+    """The assumption holds for each import of the template, and of a component that is one."""
+    assumption = "assume A: each Arm: Arm.ok needs Arm.moving"
+    (tmp_path / "Arms.rscd").write_text(LIBRARY.replace("ASSUMPTION", assumption))
+    path = tmp_path / "robot.rscd"
+    path.write_text(
+        """robot R {
+          component Hand[1..2] from Arms import Arm("/hand" + text(number))
+          component Third from Arms import Lone
+          component Way from Arms import Gate
+        }"""
+    )
+    robot_model = robosc.load(path)
+    model = robosc.to_sct(robot_model)
+    robosc.synthesize(model)
+    assert [plant.text for plant in model.plants if plant.text] == [
+        f"assume {name}.A[{name}]: {name}.ok needs {name}.moving" for name in ("Hand1", "Hand2", "Third")
+    ]
+    assert validate_model(robot_model, model).outcome is Outcome.PROVED
+
+
+@pytest.mark.parametrize(
+    ("assumption", "message", "hint"),
+    [
+        (
+            "assume each Arm: Arm.ok needs Gate.free",
+            "this assumption is about `Arm` and `Gate`, expected one component: each import of it has the assumption",
+            "write it in the robot",
+        ),
+        (
+            "assume Lone.ok needs Lone.moving",
+            "`Lone` takes its text from another component, expected a component with a text of its own",
+            "begin it with `each Arm:`, or write it in the robot",
+        ),
+    ],
+)
+def test_an_assumption_of_a_library_that_no_import_could_have(assumption: str, message: str, hint: str) -> None:
+    text = LIBRARY.replace("ASSUMPTION", assumption)
+    reading = read("Arms.rscd", documents=Documents({"Arms.rscd": text}))
+    findings = [*reading.findings, *check(reading.base, reading.findings)]
+    assert [(finding.message, finding.hint) for finding in findings] == [(message, hint)]
+
+
+def test_assumptions_of_a_library_are_sorted_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assumptions = " ".join(f"assume A{number}: Arm.ok needs Arm.moving" for number in range(5))
+    (tmp_path / "Lib.rscd").write_text(
+        f"""library Lib {{ {assumptions} component Arm {{
+          incoming message move with type: none
+          outgoing message ok with type: none
+          behaviour {{
+            initial marked state still {{ on request to move goto moving }}
+            state moving {{ on response from ok goto still }}
+          }}
+        }} }}"""
+    )
+    (tmp_path / "robot.rscd").write_text(
+        """robot R {
+          component Arm[1..9] from Lib import Arm with { move: "/m" + text(number), ok: "/o" + text(number) }
+        }"""
+    )
+    sorted_assumptions: list[robosc_model.Assumption] = []
+    original = semantics.assumed_components
+
+    def counted(assumption: robosc_model.Assumption, known: semantics.Instances) -> list[robosc_model.Component]:
+        sorted_assumptions.append(assumption)
+        return original(assumption, known)
+
+    monkeypatch.setattr(semantics, "assumed_components", counted)
+    known = semantics.Instances(robosc.load(tmp_path / "robot.rscd"))
+    assert known.statements(robosc_model.Requirement) == []
+    assert sorted_assumptions == []
+    for _ in range(3):
+        assert len(known.statements(robosc_model.Assumption)) == 45
+    assert len(sorted_assumptions) == 5
+
+
 def test_files_take_both_names(tmp_path: Path) -> None:
     text = robot(
         FLEET, AUTOMATON, "requirement R1: each Station: Station.enter needs (count Station: Station.inside) < 3"
@@ -310,16 +509,19 @@ def test_files_take_both_names(tmp_path: Path) -> None:
           expect Turns[Cell[3]].mine or Turns[Cell3].yours
           expect Cell[2].enter forbidden by Turns[Cell[2]]
           expect Cell2.enter forbidden by Turns[Cell2]
+          response from Cell[01].done
+          expect Cell[02].enter forbidden by Turns[Cell[02]]
         """
     )
+    assert errors(text.replace("Turns.mine", "Turns[Cell[02]].mine")) == []
     script = "request to Cell[1].enter\nresponse from Cell1.done\nmessage_Cell[2]_enter.c_trigger\n"
     test = CliRunner().invoke(main, ["test", str(tmp_path / "robot.rscd"), str(tmp_path / "good.scenarios")])
     assert "no event" not in test.output
     assert "[unresolved-reference]" not in test.output
     simulated = CliRunner().invoke(main, ["simulate", str(tmp_path / "robot.rscd"), "--script", "-"], input=script)
     assert [json.loads(line)["accepted"] for line in simulated.stdout.splitlines()] == [True, True, True]
-    settings = Configuration.model_validate({"onShutdown": ["Cell[2].enter", "Cell3.enter"]})
-    assert settings.on_shutdown == ["Cell2.enter", "Cell3.enter"]
+    settings = Configuration.model_validate({"onShutdown": ["Cell[2].enter", "Cell3.enter", "Cell[010].enter"]})
+    assert settings.on_shutdown == ["Cell2.enter", "Cell3.enter", "Cell10.enter"]
 
 
 def test_a_condition_of_a_scenario_keeps_its_columns(tmp_path: Path) -> None:

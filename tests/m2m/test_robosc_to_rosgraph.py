@@ -9,6 +9,7 @@ from robosc.base.ros_types import RosTypes
 from robosc.m2m import robosc_to_rosgraph, robosc_to_sct
 from robosc.model import expression as ex
 from robosc.model import rosgraph, sct
+from robosc.model.semantics.printing import RobotPrinter
 
 SCANNER = """
 robot R {
@@ -313,3 +314,26 @@ def test_kept_objects_are_where_they_came_from(robot: Callable) -> None:
         "third": ("u_response", ["poses", "0"]),
         "place": ("u_response", ["poses", "0", "pose", "position"]),
     }
+
+
+CHOICES = SCANNER.replace(
+    "provide go with { linear: { x: 0.1 } }",
+    """provide stop with
+    if Lidar.f = near then { linear: if Lidar.a then { x: 0.1 } else { x: 0.2 } }
+    else if Lidar.b then { linear: { x: 0.3 } } else { linear: { x: 0.4 } }""",
+)
+
+
+def test_each_value_of_a_choice_has_the_conditions_on_its_way(robot: Callable) -> None:
+    """The condition of a value after `else` is that the one after `if` does not hold."""
+    _, trace = robosc_to_sct.transform(robot(CHOICES))
+    graph = robosc_to_rosgraph.transform(trace)
+    (stop,) = (part for publisher in graph.publishers for part in publisher.sendings if part.name == "stop")
+    (alternative,) = stop.alternatives
+    shown = [(field.value.value, RobotPrinter()(field.condition)) for field in alternative.fields]
+    assert shown == [
+        (0.1, "Lidar.f = near and Lidar.a"),
+        (0.2, "Lidar.f = near and !Lidar.a"),
+        (0.3, "!(Lidar.f = near) and Lidar.b"),
+        (0.4, "!(Lidar.f = near) and !Lidar.b"),
+    ]

@@ -13,15 +13,15 @@ from robosc.base.diagnostics import Diagnostic, in_order
 from robosc.base.interruption import checkpoint
 from robosc.base.ros_types import RosTypes
 from robosc.language.checks import rules as _rules  # noqa: F401 - registers them
-from robosc.language.checks.libraries import reachable
+from robosc.language.checks.fleets import FleetFaults
+from robosc.language.checks.libraries import instances, reachable
 from robosc.language.checks.rule import RULES
-from robosc.model import robosc as rsc
 from robosc.model.places import place
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from robosc.model import expression as ex
+    from robosc.model import robosc as rsc
 
 
 def check(
@@ -48,17 +48,11 @@ def check(
 
 
 def _findings(base: rsc.Base, skipped: Sequence[Diagnostic], interfaces: RosTypes) -> Iterator[Diagnostic]:
-    of_fleets: set[tuple[str, ex.Located, ex.Located | None]] = set()
+    faults = FleetFaults(instances(base))
     for rule in RULES.values():
         checkpoint()
         for finding in rule.check(base, interfaces):
-            if isinstance(finding.element, rsc.Component) and finding.element.first is not None:
-                # The instances of a fleet have one text, so one finding stands for all of them.
-                key = (rule.id, finding.element, finding.related)
-                if key in of_fleets:
-                    continue
-                of_fleets.add(key)
-            if not finding.can_be_false(skipped):
+            if faults.is_new(rule.id, finding) and not finding.can_be_false(skipped):
                 file, span = place(finding.element)
                 hint, edits, ways = finding.fixes()
                 yield Diagnostic(

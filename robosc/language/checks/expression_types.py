@@ -13,7 +13,8 @@ from robosc.language.checks.type_repairs import equality_repair, negated_compari
 from robosc.model import expression as ex
 from robosc.model import robosc as rsc
 from robosc.model.semantics.expansion import constant_value
-from robosc.model.semantics.naming import TEXT_FUNCTION, escape_keyword, instance_text
+from robosc.model.semantics.instances import instance_text
+from robosc.model.semantics.naming import TEXT_FUNCTION, escape_keyword
 from robosc.model.semantics.operators import SYMBOLS, Operator, TypeRule, operator_of
 from robosc.model.semantics.typing import (
     BOOLEAN,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -10,10 +11,10 @@ from robosc.language.checks.edits import Replacement, Together
 from robosc.language.checks.expression_types import CONSTANT, ExpressionCheck
 from robosc.language.checks.rule import Finding, on_line
 from robosc.model import robosc as rsc
+from robosc.model.places import place
 from robosc.model.reflection import tree
 from robosc.model.semantics.expansion import constant_value
-from robosc.model.semantics.instances import LARGEST_FLEET, fleet_numbers
-from robosc.model.semantics.naming import instance_text
+from robosc.model.semantics.instances import LARGEST_FLEET, fleet_numbers, instance_text
 from robosc.model.semantics.printing import RoboscPrinter
 from robosc.model.semantics.typing import INTEGER
 
@@ -23,6 +24,38 @@ if TYPE_CHECKING:
     from robosc.language.checks.libraries import Meaning
     from robosc.model import expression as ex
     from robosc.model.semantics.instances import Instances
+
+
+#: Parts of a message: a line of the text, a topic or type, a name, and a number.
+_PART = re.compile(r"line \d+|[^\s`]*/[^\s`]*|[^\W\d]\w*|\d+")
+
+
+class FleetFaults:
+    """Faults of the instances of fleets: the same fault of several instances is one, since they have one text."""
+
+    def __init__(self, known: Instances) -> None:
+        self._members = {instance.name: instance.component for instance in known if instance.member is not None}
+        self._reported: set[tuple[object, ...]] = set()
+
+    def is_new(self, rule: str, finding: Finding) -> bool:
+        """Return whether a finding is the first one about its fault. A finding about no fleet always is."""
+        element = finding.element
+        is_fleet = isinstance(element, rsc.Component) and element.first is not None
+        if not is_fleet and self._members.keys().isdisjoint(_PART.findall(finding.message)):
+            return True
+        message = _PART.sub(self._generalized, finding.message)
+        # The written-out copies of a requirement with `each` have one place.
+        key = (rule, place(element), finding.places(), message)
+        is_new = key not in self._reported
+        self._reported.add(key)
+        return is_new
+
+    def _generalized(self, part: re.Match[str]) -> str:
+        """Return a part of a message without the number of an instance."""
+        text = part[0]
+        if text in self._members:
+            return self._members[text].name
+        return re.sub(r"\d+", "#", text) if text.isdecimal() or "/" in text else text
 
 
 def reference_key(reference: rsc.CommunicationReference) -> tuple[Any, ...]:

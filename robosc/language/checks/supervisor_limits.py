@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from robosc.model.semantics.cone_of_influence import AssignmentPlace, InputRead
     from robosc.model.semantics.inputs import InputSource
     from robosc.model.semantics.instances import Instance, Instances, InstanceVariable
+    from robosc.model.semantics.typing import Type
 
 
 @dataclass(frozen=True)
@@ -159,10 +160,34 @@ class _Where(NamedTuple):
     inputs: Mapping[ex.Expression, InputSource | None]
 
 
+class _Known:
+    """Facts about the parts of several expressions. The copies of a text with `each` have expanded parts in common."""
+
+    def __init__(self) -> None:
+        self._types: dict[Type | None, Types] = {}
+        self._visited: set[tuple[ex.Expression, Instance | None]] = set()
+        self.cases: dict[ex.Expression | None, int] = {}
+        self.reads: dict[ex.Expression | None, bool] = {}
+
+    def types(self, expression: ex.Expression) -> Types:
+        """Return the types of an expression and its parts."""
+        value = value_type(expression)
+        return self._types.setdefault(value, Types(value))
+
+    def is_new(self, part: ex.Expression, where: _Where) -> bool:
+        """Return whether a part has not been visited in this context."""
+        key = (part, where.within)
+        is_new = bool(where.inputs) or key not in self._visited
+        if not where.inputs:
+            self._visited.add(key)
+        return is_new
+
+
 def table_faults(instances: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
     """Report comparisons of doubles or strings, and products, with too many value combinations."""
+    known = _Known()
     for expression, where in _computed(instances, result):
-        yield from _in_expression(instances, expression, where)
+        yield from _in_expression(instances, expression, where, known)
 
 
 def _computed(instances: Instances, result: ConeOfInfluence) -> Iterator[tuple[ex.Expression, _Where]]:
@@ -182,10 +207,11 @@ def function_faults(instances: Instances, result: ConeOfInfluence) -> Iterator[F
 
     An access to a double, a string or an array has a finding of its own.
     """
+    known = _Known()
     for expression, where in _computed(instances, result):
-        types, cases = Types(value_type(expression)), dict[ex.Expression | None, int]()
+        types, cases = known.types(expression), known.cases
         fold(_cases, expression, memo=cases)
-        for part in _supervised_parts(expression, where):
+        for part in _supervised_parts(expression, where, known):
             first_access = next(accesses(part), None) if isinstance(part, ex.FunctionCall) else None
             if (
                 first_access is None
@@ -208,19 +234,20 @@ def function_faults(instances: Instances, result: ConeOfInfluence) -> Iterator[F
 
 
 def supervised_accesses(instances: Instances, result: ConeOfInfluence) -> Iterator[tuple[rsc.Access, _Where]]:
-    """Yield each access in the expressions that the supervisor computes itself, with its context."""
+    """Yield the accesses in the expressions that the supervisor computes itself, each with its first context."""
+    known = _Known()
     for expression, where in _computed(instances, result):
-        for part in _supervised_parts(expression, where):
+        for part in _supervised_parts(expression, where, known):
             if isinstance(part, rsc.Access):
                 yield part, where
 
 
-def _supervised_parts(expression: ex.Expression, where: _Where) -> Iterator[ex.Expression]:
-    """Yield the parts of an expression that the supervisor computes, without those that the node computes for it."""
+def _supervised_parts(expression: ex.Expression, where: _Where, known: _Known) -> Iterator[ex.Expression]:
+    """Yield the new parts of an expression that the supervisor computes, not those that the node computes for it."""
     pending = [expression]
     while pending:
         part = pending.pop()
-        if not isinstance(where.inputs.get(part), ComputedValue):
+        if known.is_new(part, where) and not isinstance(where.inputs.get(part), ComputedValue):
             yield part
             pending += reversed(operands(part))
 
@@ -233,14 +260,13 @@ def _cases(expression: ex.Expression | None, inside: list[int]) -> int:
     )
 
 
-def _in_expression(instances: Instances, expression: ex.Expression | None, where: _Where) -> Iterator[Fault]:
-    types = Types(value_type(expression) if expression else None)
-    reads: dict[ex.Expression | None, bool] = {}
+def _in_expression(instances: Instances, expression: ex.Expression, where: _Where, known: _Known) -> Iterator[Fault]:
+    types, reads = known.types(expression), known.reads
     fold(lambda part, inside: isinstance(part, rsc.Access) or any(inside), expression, memo=reads)
     pending = [expression]
     while pending:
         part = pending.pop()
-        if part is not None and isinstance(where.inputs.get(part), ComputedValue):
+        if not known.is_new(part, where) or isinstance(where.inputs.get(part), ComputedValue):
             continue
         if isinstance(part, COMPARISONS) and {DOUBLE, STRING} & {types(part.left), types(part.right)}:
             yield from _too_many(instances, part, _COMPARISON, where)

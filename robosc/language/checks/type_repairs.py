@@ -44,6 +44,17 @@ _LITERALS: Mapping[Type, tuple[tuple[str, ...], str]] = {
     STRING: (('""',), f'a string such as `"{_GAP}"`'),
 }
 
+#: Elements whose own parts are integers by the language, so that no declaration changes their type.
+_ALWAYS_INTEGER = (
+    ex.FunctionCall,
+    rsc.Access,
+    rsc.CommunicationReference,
+    rsc.Component,
+    rsc.CountRequirement,
+    rsc.IndexSegment,
+    rsc.IntegerDataType,
+    rsc.IntegerText,
+)
 _LITERAL = (ex.IntegerLiteral, ex.DoubleLiteral, ex.StringLiteral)
 
 
@@ -188,10 +199,11 @@ def _conversion(expression: ex.Expression, actual: Type, expected: Type) -> Hint
     if (actual, expected) == (INTEGER, DOUBLE):
         return _around(f"write `{_text(expression)} * 1.0`", expression, "", " * 1.0", is_choice=False)
     if (actual, expected) == (DOUBLE, INTEGER):
+        otherwise = "" if isinstance(expression.eContainer(), _ALWAYS_INTEGER) else " or declare it double"
         if isinstance(expression, _LITERAL):
-            return "write a whole number or declare it double: RoboSC never rounds implicitly"
+            return f"write a whole number{otherwise}: RoboSC never rounds implicitly"
         why = "`/` always gives a double" if isinstance(expression, ex.Division) else "RoboSC never rounds implicitly"
-        hint = f"write `round({_text(expression).strip('()')})` or declare it double: {why}"
+        hint = f"write `round({_text(expression).strip('()')})`{otherwise}: {why}"
         return wrap(hint, "round(", ")", expression, is_choice=True)
     if isinstance(actual, EnumType):
         return "compare an enum's values by `=` only"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias, TypeGuard
 
+from robosc.base.cache import cached
 from robosc.model import expression as ex
 from robosc.model import robosc
 from robosc.model.semantics.communication import (
@@ -224,7 +225,12 @@ def all_assignments(instances: Instances) -> Iterator[AssignmentPlace]:
 
 def accesses(expression: ex.Expression | None) -> Iterator[robosc.Access]:
     """Iterate over the accesses in an expression, from left to right."""
-    return (part for part in parts(expression) if isinstance(part, robosc.Access))
+    # Many rules read the conditions, of which the copies of a text with `each` can be long.
+    return iter(cached((accesses, expression), lambda: _accesses(expression)))
+
+
+def _accesses(expression: ex.Expression | None) -> list[robosc.Access]:
+    return [part for part in parts(expression) if isinstance(part, robosc.Access)]
 
 
 def _accesses_of_supervisor(expression: ex.Expression | None, readings: Sequence[InputRead]) -> Iterator[robosc.Access]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from robosc.model import expression as ex
 from robosc.model import robosc
-from robosc.model.reflection import contents, features, is_attribute, tree
+from robosc.model.reflection import contents, features, is_attribute, place_or_refer, tree
 from robosc.model.semantics.evaluation import Value, evaluate, literal, saturate
 from robosc.model.semantics.operators import UnreadableError
 from robosc.model.semantics.walks import copy_tree, walk
@@ -36,7 +36,8 @@ class _Environment(NamedTuple):
 
     `within` is the instance whose text contains the part. `moved`: the part is expanded in another text, so that its
     own names need their component. `templates` maps each template that a quantifier iterates over to the current
-    instance. `opened` holds the definitions that are being expanded; it stops circular expansion.
+    instance. `opened` holds the definitions that are being expanded; it stops circular expansion. `quantified` holds
+    the templates of quantifiers that are not expanded.
     """
 
     within: Instance | None
@@ -44,6 +45,7 @@ class _Environment(NamedTuple):
     templates: Mapping[robosc.Component, Instance]
     opened: frozenset[Any] = frozenset()
     moved: bool = False
+    quantified: frozenset[robosc.Component] = frozenset()
 
 
 class _Size(NamedTuple):
@@ -102,6 +104,8 @@ class Expansion:
         self._sizes: dict[Any, _Size] = {}
         #: Constants that are expanded already: literals, short expressions, or None for a long one.
         self._constants: dict[tuple[robosc.NamedExpression, Instance | None], ex.Expression | None] = {}
+        #: Expanded quantifiers of texts with `each` that do not depend on the instance.
+        self._shared: dict[tuple[robosc.InstanceQuantifier, Instance | None], ex.Expression] = {}
         self._elements: dict[ex.Located, ex.Located] = {}
         #: Expanded arguments of functions without a place yet: the first use takes the argument, later ones copy it.
         self._unplaced: set[ex.Expression] = set()
@@ -186,8 +190,8 @@ class Expansion:
                 written = yield from self._call(element, environment)
                 if written is not None:
                     return written
-            case robosc.InstanceQuantifier(template=robosc.Component()) if self._instances and not self._readable:
-                return (yield from self._quantified(element, environment))
+            case robosc.InstanceQuantifier(template=robosc.Component()):
+                return (yield from self._quantifier(element, environment))
             case robosc.IntegerText():
                 number = _value((yield (element.operand, environment)))
                 if type(number) is int:
@@ -252,6 +256,23 @@ class Expansion:
         value: ex.Expression = yield (function.value, _Environment(owner, arguments, {}, opened, environment.moved))
         return value
 
+    def _quantifier(
+        self, quantifier: robosc.InstanceQuantifier, environment: _Environment
+    ) -> Generator[Any, Any, ex.Expression]:
+        """Expand a quantifier. The copies of a text with `each` share an expansion that is the same in all of them."""
+        if self._instances is None or self._readable:
+            quantified = environment.quantified | {quantifier.template}
+            copy: ex.Expression = yield from self._copy(quantifier, environment._replace(quantified=quantified))
+            return copy
+        original = self._instances.original(quantifier)
+        if original is None or environment.templates or environment.opened:
+            return (yield from self._quantified(quantifier, environment))
+        key = (original, environment.within)
+        if key not in self._shared:
+            self._shared[key] = yield from self._quantified(quantifier, environment)
+        shared: ex.Expression = self._shared[key]
+        return shared  # It is in the first copy, and the others refer to it.
+
     def _quantified(
         self, quantifier: robosc.InstanceQuantifier, environment: _Environment
     ) -> Generator[Any, Any, ex.Expression]:
@@ -287,10 +308,12 @@ class Expansion:
                 if not feature.many:
                     setattr(copied_element, name, self._elements.get(value, value) if name == "item" else value)
             elif feature.many:
-                getattr(copied_element, name).extend(next(inside) for _ in value)
+                parts = (next(inside) for _ in value)
+                getattr(copied_element, name).extend(copy_tree(part) if part.eContainer() else part for part in parts)
             else:
-                setattr(copied_element, name, next(inside))
-        if isinstance(element, robosc.Access) and element.component is not None:
+                place_or_refer(copied_element, name, next(inside))
+        is_qualified = isinstance(element, robosc.Access) and element.component is not None
+        if is_qualified and element.component not in environment.quantified:
             owner = self._owner(element, environment)
             if owner is not None and (environment.moved or element.index or element.component in environment.templates):
                 copied_element.component = owner.referent

@@ -16,7 +16,7 @@ from robosc.model import robosc
 from robosc.model.reflection import contents
 from robosc.model.semantics.evaluation import literal
 from robosc.model.semantics.expansion import Expansion, constant, constant_value
-from robosc.model.semantics.naming import instance_text
+from robosc.model.semantics.naming import escape_keyword
 from robosc.model.semantics.walks import copy_tree, parts
 
 if TYPE_CHECKING:
@@ -182,6 +182,7 @@ class Instances:
         self._of: dict[robosc.Component, Instance] = {}
         self._fleets: dict[robosc.Component, dict[int, Instance]] = {}
         self._copies: dict[tuple[robosc.StatedDefinition, Instance], robosc.StatedDefinition] = {}
+        self._originals: dict[robosc.InstanceQuantifier, robosc.InstanceQuantifier] = {}
         resolved = {} if resolved is None else resolved
         self.expanded = Expansion(self)
         for definition in base.definitions:
@@ -224,35 +225,53 @@ class Instances:
     def statements(self, kind: type[_Element]) -> list[Statement[_Element]]:
         """Return the requirements, or other definitions of a kind: outside of components, then in each instance.
 
-        A definition with `each` is written out once for every instance of its template.
+        A definition with `each` is written out once for every instance of its template. In the text of the template
+        itself, this is the instance whose text it is.
         """
         statements: list[Statement[_Element]] = []
         texts: list[tuple[Iterable[Any], Instance | None]] = [(self.base.definitions, None)]
         texts += ((instance.local.definitions, instance) for instance in self)
-        texts += ((self._library_assumptions(instance), instance) for instance in self)
+        if issubclass(robosc.Assumption, kind):
+            texts += ((assumptions, instance) for instance, assumptions in self._library_assumptions.items())
         for definitions, within in texts:
             for definition in definitions:
                 if isinstance(definition, kind):
-                    statements += [Statement(each, within) for each in self._each(definition)]
+                    statements += [Statement(each, within) for each in self._each(definition, within)]
         return statements
 
-    def _library_assumptions(self, instance: Instance) -> list[robosc.Assumption]:
-        """Return the assumptions about an imported component that are outside of components in its library."""
-        if instance.unit is self.base:
-            return []
-        outside = (definition for definition in instance.unit.definitions if isinstance(definition, robosc.Assumption))
-        return [assumption for assumption in outside if instance.definition in assumed_components(assumption, self)]
+    @cached_property
+    def _library_assumptions(self) -> dict[Instance, list[robosc.Assumption]]:
+        """Assumptions about each imported component that are outside of components in its library."""
+        about: dict[robosc.Component, list[robosc.Assumption]] = {}
+        for library in dict.fromkeys(instance.unit for instance in self if instance.unit is not self.base):
+            for assumption in library.definitions:
+                if isinstance(assumption, robosc.Assumption):
+                    for component in assumed_components(assumption, self):
+                        about.setdefault(component, []).append(assumption)
+        imported = (instance for instance in self if instance.unit is not self.base)
+        return {instance: about[instance.definition] for instance in imported if instance.definition in about}
 
-    def _each(self, definition: Any) -> Iterable[Any]:
+    def _each(self, definition: Any, within: Instance | None) -> Iterable[Any]:
         if not isinstance(definition, robosc.StatedDefinition) or definition.template is None:
             return [definition]
-        return [self._for_instance(definition, instance) for instance in self.of(definition.template)]
+        is_own = within is not None and within.definition is definition.template
+        instances = [within] if within is not None and is_own else self.of(definition.template)
+        return [self._for_instance(definition, instance) for instance in instances]
 
     def _for_instance(self, definition: robosc.StatedDefinition, instance: Instance) -> robosc.StatedDefinition:
         """Return a definition with `each` as written for one instance. Equal arguments give the same object."""
         if (definition, instance) not in self._copies:
-            self._copies[definition, instance] = _copy_for(definition, instance)
+            copy, originals = _copy_for(definition, instance)
+            self._copies[definition, instance] = copy
+            self._originals |= originals
         return self._copies[definition, instance]
+
+    def original(self, quantifier: robosc.InstanceQuantifier) -> robosc.InstanceQuantifier | None:
+        """Return the quantifier in the text of `each` that one in a written-out copy has the meaning of.
+
+        None if it is no such copy, or its meaning depends on the instance of the copy.
+        """
+        return self._originals.get(quantifier)
 
     def requirement_state(
         self, access: robosc.Access, within: Instance | None, current: Mapping[robosc.Component, Instance]
@@ -280,7 +299,14 @@ class Instances:
 
     def of(self, component: robosc.Component) -> list[Instance]:
         """Return the instances that a component's text defines."""
-        return [instance for instance in self if instance.definition is component]
+        return self._by_definition.get(component, [])
+
+    @cached_property
+    def _by_definition(self) -> dict[robosc.Component, list[Instance]]:
+        by_definition: dict[robosc.Component, list[Instance]] = {}
+        for instance in self:
+            by_definition.setdefault(instance.definition, []).append(instance)
+        return by_definition
 
     def instance(
         self, component: robosc.Component | None, within: Instance | None, index: ex.Expression | None = None
@@ -434,6 +460,14 @@ def bound_arguments(
     return dict(defaults) | bound
 
 
+def instance_text(component: robosc.Component, number: object) -> str:
+    """Return the text that names an instance: `Base`, or `Cell[2]` in a fleet. `…` stands for an unknown number."""
+    name = escape_keyword(component.name)
+    if component.first is None:
+        return name
+    return f"{name}[{number if isinstance(number, int) else '…'}]"
+
+
 def fleet_numbers(component: robosc.Component) -> range:
     """Return the numbers of the instances of a fleet. Empty if its bounds are invalid (rule `integer-range`)."""
     first, last = constant_value(component.first), constant_value(component.last)
@@ -520,26 +554,38 @@ def _identifier(remapping: robosc.TopicRemapping, own: Arguments) -> str:
     return computed.value if isinstance(computed, ex.StringLiteral) else ""
 
 
-def _copy_for(definition: robosc.StatedDefinition, instance: Instance) -> robosc.StatedDefinition:
+def _copy_for(
+    definition: robosc.StatedDefinition, instance: Instance
+) -> tuple[robosc.StatedDefinition, dict[robosc.InstanceQuantifier, robosc.InstanceQuantifier]]:
     """Return a copy of a definition with `each` in which the template is an instance.
 
-    A quantifier over the template ranges over all instances anew.
+    A quantifier over the template ranges over all instances anew. The quantifiers of the copy that do not depend on the
+    instance are returned with their originals.
     """
     copy = copy_tree(definition)
     template, copy.template = copy.template, None
     copy.name = f"{definition.name}[{instance.name}]" if definition.name else None
-    waiting: list[Any] = [copy]
+    originals: dict[robosc.InstanceQuantifier, robosc.InstanceQuantifier] = {}
+    waiting: list[tuple[Any, Any]] = [(copy, definition)]
     while waiting:
-        part = waiting.pop()
-        if isinstance(part, robosc.InstanceQuantifier) and part.template is template:
-            continue
+        part, original = waiting.pop()
+        if isinstance(part, robosc.InstanceQuantifier):
+            originals[part] = original
+            if part.template is template:
+                continue
+        pairs = zip(contents(part), contents(original), strict=True)
+        waiting += [(child, original_child) for (_, child), (_, original_child) in pairs]
+        is_changed = False
         if isinstance(part, robosc.CommunicationReference | robosc.Access) and part.component is template:
-            part.component = instance.referent
+            part.component, is_changed = instance.referent, True
         if isinstance(part, robosc.Access) and part.item is template:
-            part.item = instance.referent
+            part.item, is_changed = instance.referent, True
         elif isinstance(part, robosc.Access) and isinstance(part.item, robosc.RequirementState) and part.index is None:
             automaton = part.item.eContainer()
             if isinstance(automaton, robosc.AutomatonRequirement) and automaton.template is template:
-                part.index = robosc.Access(item=instance.referent)
-        waiting += [child for _, child in contents(part)]
-    return copy
+                part.index, is_changed = robosc.Access(item=instance.referent), True
+        around = part if is_changed else None
+        while around is not None:
+            originals.pop(around, None)
+            around = around.eContainer()
+    return copy, originals

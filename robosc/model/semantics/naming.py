@@ -12,7 +12,6 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterable
 
     from robosc.model import expression as ex
-    from robosc.model import robosc
 
 _GRAMMAR = locate("grammar/robosc.tx").read_text(encoding="utf-8")
 
@@ -35,7 +34,7 @@ TEXT_FUNCTION = "text"
 #: The number of the instance in the arguments and remappings of a fleet.
 NUMBER = "number"
 #: An instance of a fleet, behind its name.
-_INSTANCE = re.compile(r"(?<=\w)\[([0-9]+)\]")
+_INSTANCE = re.compile(r"(?<=\w)\[0*([0-9]+)\]")
 _WORD = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 
 
@@ -80,16 +79,11 @@ def escape_keyword(name: str) -> str:
     return f"^{name}" if name in ROBOSC_KEYWORDS else name
 
 
-def instance_text(component: robosc.Component, number: object) -> str:
-    """Return the text that names an instance: `Base`, or `Cell[2]` in a fleet. `…` stands for an unknown number."""
-    name = escape_keyword(component.name)
-    if component.first is None:
-        return name
-    return f"{name}[{number if isinstance(number, int) else '…'}]"
-
-
 def output_name(name: str) -> str:
-    """Return a name as all output has it: `Cell2.enter` for `Cell[2].enter`. Other names stay unchanged."""
+    """Return a name as all output has it: `Cell2.enter` for `Cell[2].enter`. Other names stay unchanged.
+
+    As in a model, `Cell[02]` is `Cell[2]`.
+    """
     return _INSTANCE.sub(r"\1", name)
 
 

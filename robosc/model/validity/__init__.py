@@ -22,7 +22,7 @@ _LARGEST = 2**63 - 1
 _IDENTIFIER = re.compile("[A-Za-z_][A-Za-z0-9_]*")
 _PACKAGE = re.compile("[A-Za-z][A-Za-z0-9_-]*")
 #: Features whose text people read unchanged, also in logs.
-_SHOWN = ("text", "origin", "explanation")
+_SHOWN = ("text", "origin", "reference", "explanation")
 
 
 def faults(root: Any) -> Iterator[Fault]:

@@ -33,7 +33,12 @@ pytestmark = [
     pytest.mark.skipif(home() is None, reason="ESCET_HOME names no folder with CIF's tools: benchmarks/escet.md"),
 ]
 _ROOT = Path(__file__).parents[3]
-_SHIPPED = sorted([*(_ROOT / "examples").glob("*/*.rscd"), *(_ROOT / "docs" / "patterns").glob("*.rscd")])
+#: The fleet has more states than these tools take in a test.
+_SHIPPED = sorted(
+    path
+    for path in [*(_ROOT / "examples").glob("*/*.rscd"), *(_ROOT / "docs" / "patterns").glob("*.rscd")]
+    if path.parent.name != "fleet"
+)
 
 
 @pytest.fixture(scope="module")

@@ -120,7 +120,8 @@ class Names:
     def definitions(self, kind: type[_Definition]) -> list[tuple[_Definition, Environment]]:
         """Return definitions outside of components, then those in each component, with their context.
 
-        A definition with `each` is repeated: for every instance of its template.
+        A definition with `each` is repeated: for every instance of its template. In the template's own text, the
+        instance is the one with that text.
         """
         texts: list[tuple[Any, Environment]] = [(definition, Environment()) for definition in self.robot.definitions]
         texts += ((definition, instance.place) for instance in self for definition in instance.of(kind))
@@ -135,6 +136,8 @@ class Names:
         template = definition.template if isinstance(definition, robosc.StatedDefinition) else None
         if template is None:
             return [place]
+        if place.within is not None and place.within.text is template:
+            return [place._replace(at_hand={template: place.within})]
         return [place._replace(at_hand={template: instance}) for instance in self if instance.text is template]
 
     def _observer(
@@ -336,6 +339,8 @@ class Names:
         instance = None if automaton.template is None else place.at_hand.get(automaton.template)
         if isinstance(access.index, robosc.Access) and isinstance(access.index.item, robosc.Component):
             instance = self._instance_of(access.index.item, place, access.index.index)
+        if instance is not None and instance.text is automaton.eContainer().eContainer():
+            return self.observers[automaton, instance, instance]
         return self.observers[automaton, place.within if inside else None, instance]
 
     def _running(self, call: robosc.Service | robosc.Action, instance: Instance) -> ex.Expression:

@@ -25,17 +25,22 @@ if TYPE_CHECKING:
 def unique_communication(base: rsc.Base) -> Iterator[Finding]:
     """No two communications of a robot or library share a name, except those of instances of one component."""
     firsts: dict[str, PortInstance] = {}
+    reported: set[tuple[ex.Located, rsc.CommunicationType]] = set()
     for second in instances(base).ports():
         if not second.communication.name:
             continue
         first = firsts.setdefault(second.communication.name, second)
         pair = {first.communication, second.communication}
+        # All instances of a template have the names of its text.
+        place = second.communication if second.instance.unit is base else second.instance.component
+        if len(pair) == 1 or (place, second.communication) in reported:
+            continue
+        reported.add((place, second.communication))
         # If both are in one library, the finding is in that library.
-        if len(pair) == 2 and not any(pair <= _communications(library) for library in reachable(base)):
-            own = second.instance.unit is base
+        if not any(pair <= _communications(library) for library in reachable(base)):
             yield Finding(
-                second.communication if own else second.instance.component,
-                f"{_describe(second)} has the name of {_describe(first)}, expected a name of its own",
+                place,
+                f"{_describe(second, base)} has the name of {_describe(first, base)}, expected a name of its own",
                 _new_name(first, second, base),
                 related=first.communication,
             )
@@ -45,9 +50,14 @@ def _communications(base: rsc.Base) -> set[rsc.CommunicationType]:
     return cached((_communications, base), lambda: {port.communication for port in instances(base).ports()})
 
 
-def _describe(port: PortInstance) -> str:
+def _describe(port: PortInstance, base: rsc.Base) -> str:
     kind = type(port.communication).__name__.lower()
-    return f"{kind} `{port.communication.name}` of `{port.instance.name}`"
+    return f"{kind} `{port.communication.name}` of `{_owner(port, base)}`"
+
+
+def _owner(port: PortInstance, base: rsc.Base) -> str:
+    """Return the name of the component whose text declares a communication; for a library, that of the import."""
+    return port.instance.definition.name if port.instance.unit is base else port.instance.component.name
 
 
 def _new_name(first: PortInstance, second: PortInstance, base: rsc.Base) -> Hint:
@@ -55,9 +65,10 @@ def _new_name(first: PortInstance, second: PortInstance, base: rsc.Base) -> Hint
     if not own:
         return "import only one of these components: names that come from libraries cannot be changed here"
     name = own[0].communication.name
-    new = f"{name}_2" if first.instance is second.instance else f"{name}_{own[0].instance.name.lower()}"
+    owner, is_one = _owner(own[0], base), first.instance.definition is second.instance.definition
+    new = f"{name}_2" if is_one else f"{name}_{owner.lower()}"
     renamed = own[0].communication
-    hint = f"rename it in `{own[0].instance.name}`, such as `{new}`"
+    hint = f"rename it in `{owner}`, such as `{new}`"
     if renamed.identifier or renamed.computedIdentifier:
         return Renaming(hint, renamed, new)
     hint += f', and add `identifier: "{name}"` to keep its topic'

@@ -20,7 +20,7 @@ from robosc.model import robosc as rsc
 from robosc.model import sct
 from robosc.model.semantics.communication import CONTROLLABLE, port_event_of
 from robosc.model.semantics.cone_of_influence import accesses
-from robosc.model.semantics.instances import assumed_components
+from robosc.model.semantics.instances import assumed_components, definition_of
 from robosc.model.semantics.naming import enumeration, escape_keyword
 
 if TYPE_CHECKING:
@@ -88,17 +88,22 @@ def _answers(named: rsc.EventReference, communication: rsc.CommunicationType) ->
 
 
 def _about_several(library: rsc.Library) -> Iterator[Finding]:
-    """Report assumptions outside of components that are not about one component with a text of its own."""
+    """Report assumptions outside of components that are not about one component with a text of its own.
+
+    An import of a component with a text of its own keeps them, also that of a template.
+    """
     for assumption in of_kind(rsc.Assumption, library.definitions):
         about = assumed_components(assumption, instances(library))
-        only = next(iter(about), None)
-        if len(about) > 1 or (only and (only.parameters or not isinstance(only.type, rsc.LocalComponent))):
-            yield Finding(
-                assumption,
-                "an assumption of a library is about one component, which each import of it keeps;"
-                f" found {enumeration(f'`{component.name}`' for component in about)}",
-                "write it in the robot",
-            )
+        names = " and ".join(f"`{component.name}`" for component in about)
+        if len(about) > 1:
+            message = f"this assumption is about {names}, expected one component: each import of it has the assumption"
+            yield Finding(assumption, message, "write it in the robot")
+        elif about and not isinstance(about[0].type, rsc.LocalComponent) and assumption.template is None:
+            origin = definition_of(about[0])
+            is_own = origin is not None and origin.eContainer() is library
+            each = f"begin it with `each {origin.name}:`, or " if origin and origin.parameters and is_own else ""
+            message = f"{names} takes its text from another component, expected a component with a text of its own"
+            yield Finding(assumption, message, f"{each}write it in the robot")
 
 
 def _sent_on_change(base: rsc.Base) -> Iterator[Finding]:

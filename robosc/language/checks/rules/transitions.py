@@ -6,7 +6,7 @@ and `repeated-assignment`.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robosc.base.diagnostics import Severity
 from robosc.language.checks.automata import one_out, repeated_events, unknown_events
@@ -31,7 +31,13 @@ if TYPE_CHECKING:
 
     from robosc.language.checks.edits import Hint, Way
 
-_Event: TypeAlias = "tuple[Any, ...]"
+
+class _Event(NamedTuple):
+    """An event that a transition reacts to: the instance as the text names it, its communication, and the event."""
+
+    instance: Any
+    communication: rsc.CommunicationType
+    name: str
 
 
 #: Direction of a message with this event, and its sender. The component's view defines `incoming`.
@@ -146,7 +152,7 @@ def _never_taken(
     taken, other = first
     where = state or other
     place = f"state `{component.name}.{where.name}`" if where else f"every state of `{component.name}`"
-    says = f"{place} reacts to the {event[2]} of `{event[1].name}` already{on_line(taken)}, "
+    says = f"{place} reacts to the {event.name} of `{event.communication.name}` already{on_line(taken)}, "
     if state is not other:
         return (
             f"{says}expected one transition for it",
@@ -162,9 +168,9 @@ def _event(transition: rsc.Transition) -> _Event | None:
     """Return the event of a transition; None if it is silent or its event does not exist (`result-type`)."""
     if not isinstance(transition, rsc.ResultTransition) or transition.communicationType is None:
         return None
-    reference, event = transition.communicationType, str(transition.resultType)
-    known = event in event_names(reference.communicationType)
-    return (*reference_key(reference), event) if known else None
+    instance, communication = reference_key(transition.communicationType)
+    name = str(transition.resultType)
+    return _Event(instance, communication, name) if name in event_names(communication) else None
 
 
 @rule("idle-transition", Severity.WARNING)

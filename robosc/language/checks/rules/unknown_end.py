@@ -54,11 +54,9 @@ def unknown_end(base: rsc.Base) -> Iterator[Finding]:
             port = _failing(transition, instance, known)
             if port is None or not isinstance(transition, rsc.ResultTransition):
                 continue
-            # An event of a component changes only conditions that read the component or the call.
+            # A transition of a component changes only conditions that read the component.
             others = [
-                condition
-                for condition, owners in conditions
-                if condition.restricted - {port} and owners & {instance, port.instance}
+                condition for condition, owners in conditions if condition.restricted - {port} and instance in owners
             ]
             for state, left in _reasons_left(transition, instance, port, known).items():
                 misled = {
