@@ -430,6 +430,12 @@ class _JsonData(NodeData):
                     self.leaf(self._reach(part, data), part.type)
         return str(self.convert(conversion, data).name)
 
+    def convert(self, conversion: rosgraph.Conversion, argument: Any) -> ex.EnumerationLiteral:
+        """Return the literal that the data names, or that the conversion makes of it."""
+        name = argument.value if isinstance(argument, _EventValues) else None
+        named = (literal for literal in conversion.enumeration.literals if literal.name == name)
+        return next(named, None) or super().convert(conversion, argument)
+
     def _field(self, owner: _EventValues, name: str) -> _EventValues:
         value = owner.value
         if value is not _ABSENT and not isinstance(value, dict):
