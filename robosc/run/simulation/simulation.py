@@ -200,8 +200,8 @@ class LoopSimulation:
         hooks = Hooks(self._store, self._happened.append, lambda: self._happened.append("livelock"))
         self._loop = ControlLoop(model, settings, hooks)
         self.data = EventData(self._loop.engine, graph, types)
-        #: Data and inputs of the events that a step gives.
-        self._given: dict[str, tuple[Mapping[str, Any], Mapping[str, Value]]] = {}
+        #: Data and inputs of the event that a step performs, by its name.
+        self._arriving: dict[str, tuple[Mapping[str, Any], Mapping[str, Value]]] = {}
         self._in_batch = False
 
     @property
@@ -248,13 +248,13 @@ class LoopSimulation:
         }
 
     def _perform(self, event: str, data: Mapping[str, Any], inputs: Mapping[str, Value]) -> None:
-        self._given = {event: (data, inputs)}
+        self._arriving = {event: (data, inputs)}
         self._loop.perform(event, inputs)
-        self._given = {}
+        self._arriving = {}
 
     def _store(self, event: str) -> bool:
         """Change the variables that the node stores before an event."""
-        self.data.before(event, *self._given.get(event, ({}, {})))
+        self.data.before(event, *self._arriving.get(event, ({}, {})))
         return True
 
     def _wait(self, milliseconds: int) -> None:
