@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.slow
 
 FOLDER = Path(__file__).parent / "every_view"
-NAMES = ["data", "failures", "fleets", "names", "requirements", "templates", "transitions"]
+NAMES = ["data", "failures", "fleets", "names", "requirements", "templates", "transitions", "stored"]
 EACH = pytest.mark.parametrize("name", NAMES)
 
 

@@ -55,6 +55,8 @@ SENTENCES = {
         "requirement_automata",
         "undo",
         "script",
+        "log",
+        "literals",
     ],
 }
 WAYPOINTS = Path(__file__).parent / "run" / "runtime" / "waypoints.rscd"
@@ -378,8 +380,8 @@ def place(world: World) -> tuple[str, bool]:
     return str(state["component_Mission"]), bool(state["Mission.moved"])
 
 
-def test_runtime(world: World) -> None:
-    """The node compares its position with the next waypoint of the route that it stores."""
+def drive(world: World) -> list[tuple[str, bool]]:
+    """Return the places of the robot along a route."""
     world.hear("plan", poses=[waypoint(1.0), waypoint(2.0, 1.0)])
     world.wait(0.2)
     places = []
@@ -387,7 +389,12 @@ def test_runtime(world: World) -> None:
         world.hear("position", x=x, y=y, z=0.0)
         world.wait(0.2)
         places.append(place(world))
-    assert places == [
+    return places
+
+
+def test_runtime(world: World) -> None:
+    """The node compares its position with the next waypoint of the route that it stores."""
+    assert drive(world) == [
         ("driving", False),
         ("arrived", False),
         ("driving", False),
@@ -441,6 +448,29 @@ def test_undo() -> None:
     run.undo()
     assert run.data.stored == stored
     assert run.perform("message_position.u_response", {"value": POSITIONS[1]}).state["component_Mission"] == "arrived"
+
+
+def test_log(world: World) -> None:
+    """A simulation plays the log of a node and reaches the same states."""
+    drive(world)
+    world.controller.close()
+    done = CliRunner().invoke(main, ["simulate", str(WAYPOINTS), "--script", str(world.log)])
+    assert done.exit_code == 0, done.output
+    answers = [json.loads(line) for line in done.output.splitlines()]
+    assert {answer["accepted"] for answer in answers} == {True}
+    assert answers[-1]["state"]["component_Mission"] == place(world)[0] == "waiting"
+
+
+def test_literals() -> None:
+    """In stored data, the name of a literal may replace the data of an enum, too."""
+    robot = robosc.load(text=cart("on response from scan if parts[number].mode = value.mode do near := true"))
+    model = robosc.to_sct(robot)
+    robosc.synthesize(model)
+    for kept, mode in (("fast", "slow"), (0, 1), ("fast", 1)):
+        run = Simulation(model, robosc.to_rosgraph(robot))
+        run.perform("message_kept.u_response", {"value": {"parts": [{"mode": kept}]}})
+        state = run.perform("message_scan.u_response", {"value": {"mode": mode}}).state
+        assert state["Lidar.near"] is (kept == "fast" and mode == 1)
 
 
 def test_script(tmp_path: Path) -> None:

@@ -163,7 +163,7 @@ class EventData:
             self.tracked.before(
                 event,
                 inputs,
-                lambda reader: self._received(event, value if value is _ABSENT else whole(value, reader)),
+                lambda part: self._received(event, value if value is _ABSENT else whole(value, part)),
             )
 
     def inputs(self, event: str, data: Mapping[str, Any]) -> dict[str, Value]:
@@ -247,35 +247,33 @@ class EventData:
         if self._node is None or reception is None or "value" not in data or happens_anyway(reception.event):
             return None
         for reaction in self._node.reactions(reception.event):
-            guard, value = reaction.guard, data["value"]
-            needs = [*reaction.needs, *(assigned.value for assigned in reaction.assignments)]
-            is_followed = self.tracked is not None and self.tracked.is_needed
-            if is_followed and any(map(reads_stored, [*needs, *([] if guard is None else [guard])])):
-                fault = self._fault(event, data, guard, needs)
-            else:
-                fault = None if guard is None else past_end([guard], value)
-                if fault is None and (
-                    guard is None or self._node.value(guard, self._received(event, whole(value, guard)))
-                ):
-                    fault = past_end(needs, value)
+            guard, needs = reaction.guard, [*reaction.needs, *(assigned.value for assigned in reaction.assignments)]
+            fault = None if guard is None else self._fault(event, data, guard)
+            if fault is None and (guard is None or self._holds(event, data, guard)):
+                fault = next(filter(None, (self._fault(event, data, needed) for needed in needs)), None)
             if fault is not None:
                 return Unreadable(str(fault), self._errors.get(event))
         return None
 
-    def _fault(
-        self, event: str, data: Mapping[str, Any], guard: ex.Expression | None, needs: Sequence[ex.Expression]
-    ) -> UnreadableError | None:
-        """Return why values that depend on stored data can't be read, or None. Given inputs need no data."""
-        if "where" in data:
-            return None
+    def _fault(self, event: str, data: Mapping[str, Any], expression: ex.Expression) -> UnreadableError | None:
+        """Return why the node can't read a value, as far as data is given; None if it can."""
+        value, tracked = data["value"], self.tracked
+        if tracked is None or not tracked.is_needed or "where" in data or not reads_stored(expression):
+            return past_end([expression], value)
         assert self._node is not None
         try:
-            if guard is None or self._node.value(guard, self._received(event, whole(data["value"], guard))):
-                for needed in needs:
-                    self._node.value(needed, self._received(event, whole(data["value"], needed)))
+            self._node.value(expression, self._received(event, whole(value, expression)))
         except UnreadableError as fault:
             return fault
         return None
+
+    def _holds(self, event: str, data: Mapping[str, Any], guard: ex.Expression) -> bool:
+        """Return whether a guard holds. A guard that stored data decides may not, where inputs are given."""
+        assert self._node is not None
+        try:
+            return bool(self._node.value(guard, self._received(event, whole(data["value"], guard))))
+        except UnreadableError:
+            return False
 
     def _is_readable(self, reception: rosgraph.Reception, data: Any) -> bool:
         """Return whether the node can read data in the present state; False if that depends on stored data.
@@ -463,6 +461,12 @@ class _JsonData(NodeData):
                 with suppress(UnreadableError):
                     self.leaf(self._reach(part, data), part.type)
         return str(self.convert(conversion, data).name)
+
+    def convert(self, conversion: rosgraph.Conversion, argument: Any) -> ex.EnumerationLiteral:
+        """Return the literal that the data names, or that the conversion makes of it."""
+        name = argument.value if isinstance(argument, _EventValues) else None
+        named = (literal for literal in conversion.enumeration.literals if literal.name == name)
+        return next(named, None) or super().convert(conversion, argument)
 
     def _field(self, owner: _EventValues, name: str) -> _EventValues:
         value = owner.value
