@@ -404,7 +404,7 @@ def test_on_change(tmp_path: Path) -> None:
 
 
 def test_single_precision(tmp_path: Path) -> None:
-    """What was limited to a number is not above the number."""
+    """A field that was limited to a number is not above the number."""
     world = world_of(tmp_path, LAMP, SINGLE)
     world.hear("seen", data=True)
     assert sent(world, "/light") == {"data": single_precision(0.7)} != {"data": 0.7}
