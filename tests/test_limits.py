@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import math
+import re
+import shutil
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -34,6 +36,7 @@ from robosc.run.runtime.core.layer import Layer
 from robosc.run.runtime.core.settings import SafeMessages, Settings
 from robosc.tools.cli import main
 from tests.language.second_edition import errors
+from tests.m2t.cpp.test_headers import run
 from tests.run.node_tests.in_process_node import InProcessNode
 from tests.run.runtime.fake import FakePort, Record, World
 from tests.run.runtime.fake import supervised as graph_of
@@ -68,7 +71,7 @@ SENTENCES = {
     "literals, constants and parameters compared with a float32 are narrowed": ["single_precision"],
     "in scenarios `sent with` sees the limited data": ["scenario"],
     "the saved models have it": ["saved"],
-    "generated nodes apply it": ["generated_nodes", "traces"],
+    "generated nodes apply it": ["generated_nodes", "compiled_layer", "traces"],
     "verify reads it": ["verify"],
     "format, hover and completion know it": ["format", "editor"],
 }
@@ -404,7 +407,7 @@ def test_on_change(tmp_path: Path) -> None:
 
 
 def test_single_precision(tmp_path: Path) -> None:
-    """A number that is limited to a maximum is not above it."""
+    """A field that was limited to a number is not above the number."""
     world = world_of(tmp_path, LAMP, SINGLE)
     world.hear("seen", data=True)
     assert sent(world, "/light") == {"data": single_precision(0.7)} != {"data": 0.7}
@@ -524,3 +527,24 @@ def test_generated_nodes(tmp_path: Path, target: str) -> None:
     assert 'write.set("linear.x", data.linear.x, larger(-0.3, smaller(double(before.linear.x), 0.3)));' in node
     assert 'write.require("linear.x", data.linear.x);' in node
     assert ("BlockReasons::unsendable(unsendable)" in node) == (target == "ros2-layer")
+
+
+@pytest.mark.build
+@pytest.mark.skipif(shutil.which("g++") is None, reason="no g++")
+def test_compiled_layer(tmp_path: Path) -> None:
+    """It forwards limited messages, and blocks one with a number that is not finite."""
+    graph = graph_of(written(tmp_path))
+    files = robosc.generate("ros2-layer", Models(graph.model, graph), Configuration(on_blocked=["velocity"]))
+    node = next(text for path, text in files.items() if path.endswith("_node.cpp"))
+    signature = r"^  (?:bool (?:pass|forward|prepare)|void (?:limit|send))_velocity\([^\n]*\) \{\n.*?^  \}\n"
+    functions = "\n".join(re.findall(signature, node, re.DOTALL | re.MULTILINE))
+    sources = {
+        name: text for name in ("h", "c") for path, text in files.items() if path.endswith(f"_supervisor.{name}")
+    }
+    files |= {"include/cart_supervisor.h": sources["h"], "include/forwarding.inc": functions}
+    (tmp_path / "cart_supervisor.c").write_text(sources["c"])
+    assert run("g++", "forwarding.cpp", "address,undefined", files, tmp_path, tmp_path / "cart_supervisor.c") == (
+        0,
+        "",
+        "",
+    )

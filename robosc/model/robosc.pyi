@@ -21,7 +21,7 @@ class Library(Base):
     def __init__(self, *, file: str | None = ..., definitions: Iterable[Definition] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Definition(expression.Located):
-    """An element directly inside a robot or a library. Only robots contain requirements, properties and provide statements."""
+    """An element directly inside a robot or a library. Only robots contain requirements, properties, provide statements and limits."""
     def __init__(self, *, source: Place | None = ...) -> None: ...
 
 class AccessibleItem(expression.NamedElement):

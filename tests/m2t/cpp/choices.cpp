@@ -130,7 +130,7 @@ void limits_change_what_is_sent(Node& node) {
   CHECK(!node.prepare_slowed());
 }
 
-void what_was_limited_to_a_number_is_not_above_it(Node& node) {
+void a_limited_number_is_not_above_its_limit(Node& node) {
   node.data_.Base.distance = 2.0;
   CHECK(node.prepare_level() && node.level_message_.data == 0.6F && node.log_.line == "0.6000000238418579");
   node.data_.parameters.reach = 0.1;
@@ -170,7 +170,7 @@ int main() {
   node.supervisor_.state.data_slowed = chooser_data_slowed_d1;
   node.supervisor_.state.data_level = chooser_data_level_d1;
   limits_change_what_is_sent(node);
-  what_was_limited_to_a_number_is_not_above_it(node);
+  a_limited_number_is_not_above_its_limit(node);
   limits_read_arrays(node);
   return faults;
 }

@@ -33,7 +33,9 @@ VERSION = "robosc/version.hpp"
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"]
 
 
-def run(compiler: str, source: str, sanitizers: str, files: dict[str, str], folder: Path) -> tuple[int, str, str]:
+def run(
+    compiler: str, source: str, sanitizers: str, files: dict[str, str], folder: Path, *others: Path
+) -> tuple[int, str, str]:
     """Build a program with the headers of a package and run it in a folder; return its exit status and output."""
     for path, text in files.items():
         if path.startswith("include/"):
@@ -41,7 +43,7 @@ def run(compiler: str, source: str, sanitizers: str, files: dict[str, str], fold
             (folder / path).write_text(text, encoding="utf-8")
     program = folder / "program"
     options = ["-std=c++17", "-g", *WARNINGS, f"-fsanitize={sanitizers}", "-pthread", f"-I{folder / 'include'}"]
-    subprocess.run([compiler, *options, Path(__file__).parent / source, "-o", program], check=True)
+    subprocess.run([compiler, *options, Path(__file__).parent / source, *others, "-o", program], check=True)
     # ThreadSanitizer needs the program at its expected addresses.
     command = ["setarch", "--addr-no-randomize", program, folder]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=900)
