@@ -53,6 +53,7 @@ SENTENCES = {
     "where a double that is read is not finite, a layer blocks the command": ["not_finite"],
     "the saved models have it": ["saved"],
     "generated nodes have it": ["generated"],
+    "reports name what forbids": ["reasons_of_a_layer"],
 }
 
 #: A base that drives slowly near a person, with a lamp that a requirement restricts by its data.
@@ -495,3 +496,24 @@ def test_generated(tmp_path: Path) -> None:
     for target in ("ros1", "ros2", "ros2-layer", "supervisor", "cif"):
         made = CliRunner().invoke(main, ["transform", "--to", target, str(path), "-o", str(tmp_path / target)])
         assert made.exit_code == 0, made.output
+
+
+def test_reasons_of_a_layer(tmp_path: Path) -> None:
+    """A component that is not ready is the reason, not a requirement that holds with this data."""
+    text = changed("initial marked state ready {}", "initial marked state ready {} state open { on request to lamp }")
+    bench = Bench(tmp_path, text)
+    assert not bench.passes("lamp", Record(data=0))
+    assert bench.reason() == "state"
+
+
+@pytest.mark.parametrize("setting", ["onShutdown", "onWithheld", "onBlocked"])
+def test_unsteady_stops(tmp_path: Path, setting: str) -> None:
+    """A message that stops the robot has constant data."""
+    path = written(tmp_path)
+    (tmp_path / "controller-config.json").write_text(json.dumps({setting: ["lamp"]}))
+    target = "ros2-layer" if setting == "onBlocked" else "ros2"
+    output = CliRunner().invoke(main, ["transform", "--to", target, str(path), "-o", str(tmp_path / "out")]).output
+    assert f'"{setting}": the data of lamp depend on the state of the robot, and may not stop it' in output
+    path.write_text(changed("  provide Base.lamp with 2 if Person.near\n", ""))
+    output = CliRunner().invoke(main, ["transform", "--to", target, str(path), "-o", str(tmp_path / "out")]).output
+    assert "and may not stop it" not in output

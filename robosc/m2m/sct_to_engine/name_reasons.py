@@ -30,8 +30,10 @@ def name_reasons(
     for requirement in model.requirements:
         forbidden = lower(requirement.condition, positive=requirement.kind == sct.RequirementKind.disables)
         if any(isinstance(declaration, engine.Input) for declaration in forbidden.reads()):
-            nothing_allowed = lower.terms.opposite(guards[requirement.event].whole)
-            forbidden = lower.terms.junction(engine.Or, [forbidden, nothing_allowed])
+            # In a state in which the plants enable the command, no data are allowed.
+            guard, junction = guards[requirement.event], lower.terms.junction
+            nothing_allowed = junction(engine.And, [guard.plants, lower.terms.opposite(guard.requirement)])
+            forbidden = junction(engine.Or, [forbidden, nothing_allowed])
         if forbidden.constant != 0:
             reason = _reason(engine.Origin.requirement, forbidden, requirement.text or "a requirement")
             reason.requirement = requirement

@@ -16,7 +16,15 @@ from robosc.model import expression as ex
 from robosc.model import rosgraph
 from robosc.model.places import place
 from robosc.model.reflection import tree
-from robosc.model.semantics.messages import fields_set, find_message, holds_objects, parts_of, path_of, source_of
+from robosc.model.semantics.messages import (
+    fields_set,
+    find_message,
+    holds_objects,
+    is_constant,
+    parts_of,
+    path_of,
+    source_of,
+)
 from robosc.model.semantics.roles import assumptions
 from robosc.model.semantics.typing import DOUBLE, ArrayType, declared_type, infer
 
@@ -75,6 +83,7 @@ def preconditions(models: Models, configuration: Configuration, kind: str, ros: 
         *_package(graph, configuration, configuration.layer_name(graph)),
         *_shared_topics(graph),
         *_unsendable(graph, configuration, "onBlocked", configuration.on_blocked),
+        *_unsteady(graph, configuration, "onBlocked", configuration.on_blocked),
         *_swallowed(graph, models.engine, configuration),
         *_controller(configuration),
         *_unused(configuration),
@@ -210,6 +219,7 @@ def _outside(
 ) -> Iterator[Diagnostic]:
     """Return errors on names in a setting that are no sent messages, and warnings on requirements that it overrides."""
     yield from _unsendable(graph, configuration, setting, names)
+    yield from _unsteady(graph, configuration, setting, names)
     for place_of_name, name in enumerate(names):
         sending = find_message(graph, name)
         if sending is None:
@@ -230,6 +240,18 @@ def _unsendable(
             hint = f"messages to the robot: {', '.join(sent)}" if sent else None
             message = f'"{setting}": {name} is not a message that the node sends'
             yield configuration.error((setting, place_of_name), message, hint)
+
+
+def _unsteady(
+    graph: rosgraph.RosGraph, configuration: Configuration, setting: str, names: Sequence[str]
+) -> Iterator[Diagnostic]:
+    """Return warnings on messages that stop the robot, if their data depend on its state."""
+    for place_of_name, name in enumerate(names):
+        sending = find_message(graph, name)
+        if sending is not None and not is_constant(sending):
+            message = f'"{setting}": the data of {name} depend on the state of the robot, and may not stop it'
+            hint = "name a message with one `provide` of constant data"
+            yield configuration.warning((setting, place_of_name), message, hint)
 
 
 def _swallowed(

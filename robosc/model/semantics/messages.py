@@ -358,6 +358,23 @@ def sent_values(sending: rosgraph.Sending) -> list[ex.Expression]:
     return [*(part for part in parts if part is not None), *limit_expressions(sending)]
 
 
+def is_constant(sending: rosgraph.Sending) -> bool:
+    """Return whether `provide` statements always give a command the same data. Limits do not count."""
+    if len(sending.alternatives) > 1:
+        return False
+    literals = (ex.BooleanLiteral, ex.IntegerLiteral, ex.DoubleLiteral, ex.StringLiteral)
+    constants = (*literals, ex.UnaryMinus, ex.DoubleConversion, rosgraph.ArrayLiteral)
+    fields = [field for data in sending.alternatives for field in data.fields]
+    return all(
+        field.condition is None and all(isinstance(part, constants) for part in _expressions(field.value))
+        for field in fields
+    )
+
+
+def _expressions(value: ex.Expression) -> Iterator[ex.Expression]:
+    return (part for _, part in tree(value) if isinstance(part, ex.Expression))
+
+
 def paths_set(sending: rosgraph.Sending) -> list[Path]:
     """Return the fields that the model sets, in the order of the model; `()` is the whole message."""
     return list(dict.fromkeys(tuple(field.path) for field in fields_set(sending)))

@@ -312,6 +312,8 @@ def _filled(held: Any, value: Any, make: Callable[[], Any], element: Callable[[A
         return fill(held, value, element)
     if isinstance(held, bytes):
         return bytes([value])
+    if value is None:  # an event log writes null for a number that is not finite
+        return math.nan
     kind = next((basic for basic in (bool, int, float) if isinstance(held, basic)), None)
     return value if kind is None else kind(value)
 
