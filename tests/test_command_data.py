@@ -54,6 +54,9 @@ SENTENCES = {
     "the saved models have it": ["saved"],
     "generated nodes have it": ["generated"],
     "reports name what forbids": ["reasons_of_a_layer"],
+    "an integer outside its range is not judged": ["out_of_range"],
+    "a command is withheld as one whose data are not finite": ["instead_of_forbidden_data"],
+    "messages on change are sent again after others": ["on_change"],
 }
 
 #: A base that drives slowly near a person, with a lamp that a requirement restricts by its data.
@@ -517,3 +520,101 @@ def test_unsteady_stops(tmp_path: Path, setting: str) -> None:
     path.write_text(changed("  provide Base.lamp with 2 if Person.near\n", ""))
     output = CliRunner().invoke(main, ["transform", "--to", target, str(path), "-o", str(tmp_path / "out")]).output
     assert "and may not stop it" not in output
+
+
+def test_out_of_range(tmp_path: Path) -> None:
+    """A layer does not judge another number than it forwards."""
+    bench = Bench(tmp_path)
+    for level in (-100, 70):
+        assert not bench.passes("lamp", Record(data=level))
+        assert bench.reason() == "data"
+
+
+def test_instead_of_forbidden_data(tmp_path: Path) -> None:
+    """A command whose data are forbidden is withheld as one whose data cannot be sent."""
+    text = changed(
+        "    incoming message lamp",
+        '    incoming message halt with identifier: "/velocity", type: geometry_msgs/Twist\n    incoming message lamp',
+    )
+    text = changed(
+        "  provide Base.velocity",
+        "  requirement Base.halt needs Person.near and Person.far\n  provide Base.velocity",
+        text,
+    )
+    world = World(written(tmp_path, text), tmp_path / "log.jsonl", Configuration(on_withheld=["halt"])).start()
+    world.wait(0.15)
+    world.port.sent.clear()
+    world.hear("seen", data=True)
+    world.wait(0.3)
+    halts = [data for topic, data in world.port.sent if topic == "/velocity"]
+    assert halts == [{}, {}], "once for the velocity, once for the lamp"
+
+
+CHANGES = """robot Cart {
+  component Person {
+    outgoing message seen with identifier: "/seen", type: boolean
+    behaviour {
+      initial marked state far { on response from seen if value goto near }
+      marked state near { on response from seen if !value goto far }
+    }
+  }
+  component Base {
+    incoming message go with identifier: "/speed", type: double, send: change
+    incoming message halt with identifier: "/speed", type: double, send: change
+  }
+  requirement Base.go needs Person.far
+  requirement Base.halt needs Person.near or value < 0.0
+  provide Base.go with 0.5
+  provide Base.halt with 0.0
+}
+"""
+
+
+def test_on_change(tmp_path: Path) -> None:
+    """A message on the same topic, or forbidden data, let a message be sent again."""
+    world = World(written(tmp_path, CHANGES), tmp_path / "log.jsonl").start()
+    world.wait(0.15)
+    for seen in (True, False, True, False):
+        world.port.sent.clear()
+        world.hear("seen", data=seen)
+        world.wait(0.3)
+        assert sent(world, "/speed") == [0.0 if seen else 0.5]
+
+
+def test_disables_fields(tmp_path: Path) -> None:
+    text = changed(
+        "requirement R2: value > 1 disables Base.lamp", "requirement R2: value.linear.y > 0.1 disables Base.velocity"
+    )
+    assert rules(text) == []
+    bench = Bench(tmp_path, text)
+    assert bench.passes("velocity", Record(linear=Record(x=0.1, y=0.0)))
+    assert not bench.passes("velocity", Record(linear=Record(x=0.1, y=0.5)))
+    assert rules(changed("value > 1 disables Base.lamp", "value.foo > 1 disables Base.lamp")) != []
+
+
+def test_running_goal_is_judged_by_the_state() -> None:
+    """The state of the robot is no part of the data that an action keeps."""
+    assert rules(GOALS.replace("value.order < 5", "value.order < (if Door.closed then 10 else 2)")) != []
+
+
+def test_parameters_of_one_name(tmp_path: Path) -> None:
+    """The parameters of a library and of a robot are two."""
+    (tmp_path / "Lib.rscd").write_text(
+        """library Lib {
+          parameter most: double = 0.1
+          component Base {
+            incoming message v with identifier: "/v", type: double
+            requirement v needs value < most
+          }
+        }"""
+    )
+    robot = written(
+        tmp_path,
+        """robot R {
+          component Base from Lib import Base
+          parameter most: double = 0.9
+          requirement Base.v needs value < most
+        }""",
+    )
+    model = robosc.to_sct(robosc.load(robot))
+    assert [len(plant.inputs) for plant in model.plants if plant.name == "message_v"] == [2]

@@ -26,10 +26,12 @@ from robosc.model.semantics.messages import (
     is_structured,
     limit_expressions,
     parts_with_headers,
+    path_of,
     paths_set,
     reads_elements,
     reads_parameters,
     reads_reason,
+    stored_doubles,
 )
 from robosc.model.semantics.naming import Names
 from robosc.model.semantics.operators import PRECEDENCE
@@ -358,7 +360,8 @@ class GeneratedNode:
     def may_withhold(self) -> bool:
         """Whether the data of a command may be impossible to send."""
         messages = [message for publisher in self.publishers for message in publisher.messages]
-        return any(message.may_fail for message in [*messages, *(client.request for client in self.clients)])
+        messages += [client.request for client in self.clients]
+        return any(message.may_fail or message.inputs for message in messages)
 
     @property
     def hands_on(self) -> bool:
@@ -621,27 +624,37 @@ class GeneratedNode:
         fields = fields_set(sending)
         values = [part for field in fields for part in (field.condition, field.value) if part is not None]
         reads = any(map(reads_elements, [*values, *limit_expressions(sending)]))
-        doubles = doubles_read(sending)
+        doubles, stored = doubles_read(sending), stored_doubles(sending)
         return Message(
             self._sent.fresh(self._names.c.member(plant).removeprefix(f"{plant.kind.name}_")),
             self._names.c.enumerator(sending.event),
             self._events[sending.event].remarks,
             [self._alternative(provided) for provided in sending.alternatives],
-            reads or (bool(doubles) and bool(sending.limits)) or any(map(_may_be_infinite, fields)),
+            reads or bool(sending.limits and (doubles or stored)) or any(map(_may_be_infinite, fields)),
             reads,
             [".".join(path) for path in paths_set(sending)] if sending.onChange else None,
             self._handler(sending.event) if sending.event in self._reactions else None,
             [".".join(path) for path in parts_with_headers(sending)],
             [self._limit(limit) for limit in sending.limits],
-            [_required(path) for path in doubles],
+            [*map(_required, doubles), *(self._required_stored(*each) for each in stored.items())],
             [self._command_input(assignment) for assignment in sending.inputs],
-            any(reads_elements(assignment.value) for assignment in sending.inputs),
+            any(reads_elements(assignment.value) or _is_ranged(assignment) for assignment in sending.inputs),
         )
+
+    def _required_stored(self, name: str, stored: ex.Expression) -> str:
+        """Return the statement that requires a stored double, or the doubles of an array, to be finite."""
+        value, label = self._printer(stored), string_literal(name)
+        if isinstance(infer(stored), ArrayType):
+            return f"for (const auto& element : {value}) write.require({label}, element);"
+        return f"write.require({label}, {value});"
 
     def _command_input(self, assignment: rosgraph.InputAssignment) -> str:
         """Return the statement that sets an input of a command."""
         kind, value = assignment.input.type, self._printer(assignment.value)
-        if isinstance(kind, ex.IntegerType):
+        if isinstance(kind, ex.IntegerType) and _is_ranged(assignment):
+            path = string_literal(".".join(path_of(assignment.value)))
+            value = f"read.within({path}, {value}, {kind.minimum}, {kind.maximum}).to<std::{type_name(kind)}>()"
+        elif isinstance(kind, ex.IntegerType):
             value = f"{self._printer.integer(assignment.value, kind)}.to<std::{type_name(kind)}>()"
         return Assignment(f"supervisor_.inputs.{self._names.c.member(assignment.input)}", value).statement
 
@@ -676,6 +689,11 @@ class GeneratedNode:
 
 def _value(value: ex.Expression, kind: ex.Type, printer: CppPrinter) -> str:
     return printer.integer(value, kind) if isinstance(kind, ex.IntegerType) else printer(value)
+
+
+def _is_ranged(assignment: rosgraph.InputAssignment) -> bool:
+    """Return whether an input is an integer of the data with a range. A number outside of it goes nowhere."""
+    return isinstance(assignment.input.type, ex.IntegerType) and isinstance(assignment.value, rosgraph.WireAccess)
 
 
 def _required(path: Path, data: str = "data", label: Path = ()) -> str:

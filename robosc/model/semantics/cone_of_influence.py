@@ -18,7 +18,7 @@ from robosc.model.semantics.communication import (
 )
 from robosc.model.semantics.inputs import ComputedValue, inputs_in, may_be_missing, readable
 from robosc.model.semantics.instances import PortInstance
-from robosc.model.semantics.state_values import InputContext, StateValue, with_command_values, with_state_values
+from robosc.model.semantics.state_values import InputContext, StateValue, with_own_parameters, with_state_values
 from robosc.model.semantics.typing import declared_type, read_from
 from robosc.model.semantics.walks import operands, parts
 
@@ -268,7 +268,7 @@ def read_data(
     if _is_received(event):
         inputs = list(with_state_values(inputs, expression, context))
     elif is_condition:
-        inputs = list(with_command_values(inputs, expression, context))
+        inputs = list(with_own_parameters(inputs, expression, context))
     for part, carried in inputs:
         access = _first_access(part)
         reason = NeedReason(access, within, variable)

@@ -61,7 +61,7 @@ class Data:
 class ComputedValue:
     """A value that the node computes from data without a finite domain, such as `value.range < 0.5`.
 
-    Values with the same text are equal. `bounds` are the bounds of an integer, if any apply.
+    Values with the same text and the same parameters are equal. `bounds` are the bounds of an integer, if any apply.
     """
 
     port: PortInstance
@@ -70,6 +70,7 @@ class ComputedValue:
     bounds: tuple[int, int] | None
     expression: ex.Expression = field(compare=False)
     type: Type = field(compare=False)
+    parameters: tuple[robosc.Parameter, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -121,7 +122,15 @@ def inputs_in(
         elif kind in {BOOLEAN, INTEGER} or isinstance(kind, EnumType):
             yield (
                 part,
-                ComputedValue(port, event, RoboscPrinter()(part), limits if kind == INTEGER else None, part, kind),
+                ComputedValue(
+                    port,
+                    event,
+                    RoboscPrinter()(part),
+                    limits if kind == INTEGER else None,
+                    part,
+                    kind,
+                    parameters_in(part),
+                ),
             )
         elif isinstance(part, robosc.Access) and part.value:
             yield part, None if reads[part].beyond else Data(port, event, property_path(part) or ())
@@ -132,13 +141,19 @@ def inputs_in(
             pending += reversed(list(zip(inside, limits_inside, strict=True)))
 
 
+def parameters_in(expression: ex.Expression) -> tuple[robosc.Parameter, ...]:
+    """Return the parameters that an expression reads. Those of a library and of a robot may have the same name."""
+    accesses = (part for part in parts(expression) if isinstance(part, robosc.Access))
+    return tuple(access.item for access in accesses if isinstance(access.item, robosc.Parameter))
+
+
 def readable(carried: ComputedValue) -> ComputedValue:
     """Return the input that is true if all array elements for a value exist.
 
     Its expression compares the value with itself.
     """
     same = ex.Equation(left=copy_tree(carried.expression), right=copy_tree(carried.expression))
-    return ComputedValue(carried.port, carried.event, RoboscPrinter()(same), None, same, BOOLEAN)
+    return ComputedValue(carried.port, carried.event, RoboscPrinter()(same), None, same, BOOLEAN, carried.parameters)
 
 
 def may_be_missing(carried: ComputedValue) -> bool:

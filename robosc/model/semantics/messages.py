@@ -17,6 +17,7 @@ from robosc.model.reflection import contents, tree
 from robosc.model.semantics.evaluation import Value, saturate
 from robosc.model.semantics.operators import operator_of
 from robosc.model.semantics.roles import event_name
+from robosc.model.semantics.walks import operands
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -392,6 +393,24 @@ def doubles_read(sending: rosgraph.Sending) -> list[Path]:
                 if isinstance(kind, ex.DoubleType):
                     paths[path] = None
     return list(paths)
+
+
+def stored_doubles(sending: rosgraph.Sending) -> dict[str, ex.Expression]:
+    """Return the stored doubles, and arrays of them, that the limits of a message read, by their names."""
+    stored: dict[str, ex.Expression] = {}
+    for _, part in (inner for expression in limit_expressions(sending) for inner in tree(expression)):
+        if isinstance(part, rosgraph.NodeVariableReference) and not isinstance(part.variable, rosgraph.Parameter):
+            variable = part.variable
+            path: Path = ()
+            kind: ex.Type | None = variable.type
+        elif isinstance(part, rosgraph.WireAccess) and part.variable is not None and not operands(part):
+            variable, path, kind = part.variable, path_of(part), part.type
+        else:
+            continue
+        kind = kind.element if isinstance(kind, rosgraph.ArrayType) else kind
+        if isinstance(kind, ex.DoubleType):
+            stored[".".join((variable.component or "", variable.name, *path))] = part
+    return stored
 
 
 def parts_with_headers(sending: rosgraph.Sending) -> list[tuple[str, ...]]:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeGuard
 from robosc.model import expression as ex
 from robosc.model import robosc
 from robosc.model.semantics.communication import data_type, happens_anyway
-from robosc.model.semantics.inputs import ComputedValue, is_partial
+from robosc.model.semantics.inputs import ComputedValue, is_partial, parameters_in
 from robosc.model.semantics.operators import TypeRule, operator_of
 from robosc.model.semantics.printing import RoboscPrinter
 from robosc.model.semantics.typing import (
@@ -82,31 +82,19 @@ def with_state_values(
     ]
 
 
-def with_command_values(
+def with_own_parameters(
     inputs: Sequence[tuple[ex.Expression, InputSource | None]], expression: ex.Expression, context: InputContext
 ) -> Sequence[tuple[ex.Expression, InputSource | None]]:
-    """Return the parts of a condition on a command that become inputs, as `with_state_values` does.
+    """Return the parts of a condition on a command that become inputs.
 
-    Each condition that the node computes from the robot's state reads the data of the command: no event happens beside
-    the others. If one does not, `inputs` are the result.
+    Values that read parameters of a component belong to it. The node computes nothing else from the robot's state: for
+    a running goal, the supervisor must judge the state anew.
     """
-    combined = with_state_values(inputs, expression, context)
-    conditions = [part for part, source in combined if isinstance(source, StateValue)]
-    while conditions:
-        condition = conditions.pop()
-        if isinstance(condition, _JOINS):
-            conditions += operands(condition)
-        elif _reads_state_alone(condition):
-            return inputs
-    return combined
-
-
-def _reads_state_alone(condition: ex.Expression) -> bool:
-    """Return whether a condition reads the robot's state, but no data of an event."""
-    accesses = [part for part in parts(condition) if isinstance(part, robosc.Access)]
-    return any(isinstance(access.item, robosc.Variable) for access in accesses) and not any(
-        access.value for access in accesses
-    )
+    splitting = _Splitting(dict(inputs), expression, context)
+    return [
+        (part, splitting.state_value(part, source.bounds) if _reads_own_parameter(source) else source)
+        for part, source in inputs
+    ]
 
 
 class _Splitting:
@@ -247,7 +235,8 @@ class _Splitting:
         """Return the value of a part as an input with these bounds."""
         instances, within, port, event, *_ = self._context
         expression = _qualified(part, instances, within)
-        return StateValue(port, event, RoboscPrinter()(expression), bounds, expression, self._types(part), within)
+        kind, parameters = self._types(part), parameters_in(expression)
+        return StateValue(port, event, RoboscPrinter()(expression), bounds, expression, kind, parameters, within)
 
 
 def _reads_own_parameter(source: InputSource | None) -> TypeGuard[ComputedValue]:

@@ -75,7 +75,8 @@ class Robot:
         fields = self._fields.setdefault((interface, section), {})
         definition = Definition(self._distribution, interface, section)
         sent = (known for field in fields_set(sending) for known in fields_sent(field))
-        for path, kind in (*sent, *data_read(reads(limit_expressions(sending)))):
+        expressions = [*limit_expressions(sending), *(assigned.value for assigned in sending.inputs)]
+        for path, kind in (*sent, *data_read(reads(expressions))):
             fields[path] = definition.field(path, kind)
 
     # Calls of the controller

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from copy import deepcopy
 from dataclasses import dataclass, field
 from functools import reduce
@@ -9,12 +11,13 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.model import expression as ex
 from robosc.model import rosgraph
-from robosc.model.semantics.messages import doubles_read, holds_objects, parts_with_headers
+from robosc.model.semantics.messages import doubles_read, holds_objects, parts_with_headers, path_of, stored_doubles
+from robosc.model.semantics.operators import UnreadableError
 from robosc.run.runtime.core.event_log import nest
-from robosc.run.runtime.core.node_data import fill, hand_on, require_finite, within_range
+from robosc.run.runtime.core.node_data import NotFiniteError, fill, hand_on, require_finite, within_range
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Mapping
 
     from robosc.base.ros_types import Section
     from robosc.model.semantics.messages import Path
@@ -71,8 +74,18 @@ class Composer:
         return message
 
     def inputs(self, sending: rosgraph.Sending, message: Message) -> dict[str, Any]:
-        """Return the inputs of a command with this data, by name. Raises UnreadableError."""
+        """Return the inputs of a command with this data, by name.
+
+        Raises UnreadableError if an element is missing, or an integer is outside its range.
+        """
         values = {assigned.input.name: self.data.value(assigned.value, message) for assigned in sending.inputs}
+        for assigned in sending.inputs:
+            kind, value = assigned.input.type, values[assigned.input.name]
+            if not isinstance(kind, ex.IntegerType) or not isinstance(assigned.value, rosgraph.WireAccess):
+                continue
+            if within_range(value, kind) != value:
+                path = ".".join(path_of(assigned.value))
+                raise UnreadableError(f"its {path} is {value}, expected {kind.minimum} to {kind.maximum}")
         literals = ex.EnumerationLiteral
         return {name: value.name if isinstance(value, literals) else value for name, value in values.items()}
 
@@ -81,6 +94,10 @@ class Composer:
             self._doubles[sending] = doubles_read(sending)
         for path in self._doubles[sending]:
             require_finite(message, path)
+        for name, stored in stored_doubles(sending).items():
+            value = self.data.value(stored)
+            if not all(map(math.isfinite, value if isinstance(value, Sequence) else [value])):
+                raise NotFiniteError([name])
         for limit in sending.limits:
             if limit.condition is None or self.data.value(limit.condition, message):
                 self._assign(limit.fields, message, deepcopy(message), fields)

@@ -43,6 +43,7 @@ class _Sender:
     """Sender of the data of one trigger. `message` and `logged` hold the data prepared last."""
 
     sending: rosgraph.Sending
+    owner: rosgraph.Publisher | Client
     interface: rosgraph.Interface
     section: Section
     frame: str
@@ -134,7 +135,7 @@ class Controller(EventHandler):
         send: Callable[[Message], None],
     ) -> None:
         frame = self._settings.configuration.frame_id.get(name.removeprefix("/"), "")
-        sender = self._senders[sending.event] = _Sender(sending, owner.interface, section, frame, send)
+        sender = self._senders[sending.event] = _Sender(sending, owner, owner.interface, section, frame, send)
         if sending.onChange:
             self._on_change.append(sender)
 
@@ -210,6 +211,7 @@ class Controller(EventHandler):
         for sending in messages:
             sender = self._senders[sending.event]
             if self._prepare(sender):
+                self._forget_handed(sender.owner)
                 sender.send(sender.message)
                 self._log.write(self._port.now(), "outside", event_name(sending.event), sender.logged)
 
@@ -260,14 +262,12 @@ class Controller(EventHandler):
             return event not in self._resets or self._resets[event].pause is None
         if self._halted or self._unheard:
             return False
-        if not self._prepare(sender):
+        if not (self._prepare(sender) and self._permits(sender)):
             if name not in self._withheld:
                 self._withheld.add(name)
                 self._send_outside(self._safe.on_withheld)
             return False
         self._withheld.discard(name)
-        if sender.sending.inputs and not self._permits(sender):
-            return False
         self._sent = sender.message
         return not (sender.sending.onChange and sender.unchanged)
 
@@ -278,6 +278,8 @@ class Controller(EventHandler):
         """
         engine, event = self._control.engine, sender.sending.event
         name = event_name(event)
+        if not sender.sending.inputs:
+            return True
         try:
             engine.set_inputs(name, self._composer.inputs(sender.sending, sender.message))
         except UnreadableError as fault:
@@ -286,6 +288,7 @@ class Controller(EventHandler):
         if engine.permits_inputs(name):
             self._forbidden.discard(name)
             return True
+        sender.handed = _NOT_SENT
         if name not in self._forbidden:
             self._forbidden.add(name)
             self._publish_blocked(event, "requirement", self._blocking.reason(event).because)
@@ -316,7 +319,8 @@ class Controller(EventHandler):
         failed += [
             (client.identifier, self._starters[client].trouble) for client in parts.clients if client in self._starters
         ]
-        withheld = [sending.name for sending in parts.commands if event_name(sending.event) in self._withheld]
+        unsendable = self._withheld - self._forbidden
+        withheld = [sending.name for sending in parts.commands if event_name(sending.event) in unsendable]
         return [
             *(f"{topic.topic} is silent" for topic in silent),
             *(f"{topic.topic} was not heard yet" for topic in unheard),
@@ -335,6 +339,12 @@ class Controller(EventHandler):
             self._warn_withheld(sender, fault)
             return False
         return True
+
+    def _forget_handed(self, owner: rosgraph.Publisher | Client) -> None:
+        """Send each message of a topic again that is sent on change: another one has gone out there."""
+        for sender in self._on_change:
+            if sender.owner is owner:
+                sender.handed = _NOT_SENT
 
     def _warn_withheld(self, sender: _Sender, fault: NotFiniteError | UnreadableError) -> None:
         event = sender.sending.event
@@ -355,6 +365,7 @@ class Controller(EventHandler):
         sender = self._senders.get(event)
         if sender is not None:
             sender.send(sender.message)
+            self._forget_handed(sender.owner)
             if sender.sending.onChange:
                 sender.handed = sender.message
             return "out", sender.logged

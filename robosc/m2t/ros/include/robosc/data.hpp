@@ -197,6 +197,15 @@ class ArrayReader {
     return {array.begin(), array.begin()};
   }
 
+  /// The number at a path, if it is at least `low` and at most `high`.
+  Integer within(const char* path, Integer number, std::int64_t low, std::int64_t high) {
+    if (number < low || high < number) {
+      fail("its " + std::string(path) + " is " + std::to_string(number.to<std::int64_t>()) + ", expected " +
+           std::to_string(low) + " to " + std::to_string(high));
+    }
+    return number.within(low, high);
+  }
+
   template <typename Number, typename Array>
   Number least(const Array& array) {
     return first_of<Number>(array, [](Number a, Number b) { return a < b; });
