@@ -651,7 +651,7 @@ class GeneratedNode:
     def _command_input(self, assignment: rosgraph.InputAssignment) -> str:
         """Return the statement that sets an input of a command."""
         kind, value = assignment.input.type, self._printer(assignment.value)
-        if isinstance(kind, ex.IntegerType) and _is_ranged(assignment):
+        if isinstance(kind, ex.IntegerType) and isinstance(assignment.value, rosgraph.WireAccess):
             path = string_literal(".".join(path_of(assignment.value)))
             value = f"read.within({path}, {value}, {kind.minimum}, {kind.maximum}).to<std::{type_name(kind)}>()"
         elif isinstance(kind, ex.IntegerType):
@@ -692,7 +692,7 @@ def _value(value: ex.Expression, kind: ex.Type, printer: CppPrinter) -> str:
 
 
 def _is_ranged(assignment: rosgraph.InputAssignment) -> bool:
-    """Return whether an input is an integer of the data with a range. A number outside of it goes nowhere."""
+    """Return whether an input is an integer of the data with a range. A layer forwards no number outside of it."""
     return isinstance(assignment.input.type, ex.IntegerType) and isinstance(assignment.value, rosgraph.WireAccess)
 
 
