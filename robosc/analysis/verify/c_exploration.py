@@ -11,7 +11,8 @@ from robosc.analysis.verify.c_program import TEXT, CProgram
 from robosc.analysis.verify.differences import different, event_in_words, on_one_side, refute, where
 from robosc.analysis.verify.transitions import AmbiguityError, of_system
 from robosc.analysis.verify.verdict import Outcome, Verdict
-from robosc.model.semantics.roles import event_name
+from robosc.model import sct
+from robosc.model.semantics.roles import assumption_text, event_name
 from robosc.model.semantics.start import first_state
 from robosc.synthesis import MEMORY
 from robosc.synthesis.bdd import Diagrams, with_enough_memory
@@ -20,7 +21,6 @@ from robosc.synthesis.encoding import BitLayout, Encoding, domain_size, smallest
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from robosc.model import sct
     from robosc.synthesis.bdd import Diagram
     from robosc.synthesis.encoding import Element
 
@@ -104,6 +104,15 @@ class _Trial:
             for element in changed:
                 bits = transition.bits(element, system.encoding)
                 yield " ".join(map(str, (cells[element], *map(nodes.number, bits))))
+            yield from (str(nodes.number(violated)) for violated in self._violations(system, event))
+
+    def _violations(self, system: GuardedSystem, event: sct.Event) -> Iterator[Diagram]:
+        """Yield the states in which an event violates each assumption: all other plants allow it there."""
+        enabled_by = system.relations[event].enabled_by
+        others = [enabled for plant, enabled in enabled_by.items() if plant.kind != sct.PlantKind.assumption]
+        for assumption in self._program.assumptions:
+            holds = enabled_by.get(assumption, system.diagrams.true)
+            yield system.diagrams.all_of([~holds, *others])
 
     def _verdict(self, system: GuardedSystem, word: str, numbers: Sequence[int]) -> Verdict:
         match word:
@@ -117,7 +126,18 @@ class _Trial:
             case "initial":
                 codes = dict(zip(self._cells, numbers, strict=True))
                 return refute(PROPERTY, f"at the start {different(codes, _start(self._model), TEXT)}")
+            case "violates":
+                return self._violation(system, numbers)
         return self._difference(system, numbers)
+
+    def _violation(self, system: GuardedSystem, numbers: Sequence[int]) -> Verdict:
+        event, assumption = self._events[numbers[0]], self._program.assumptions[numbers[1]]
+        before = dict(zip(self._cells, numbers[3:], strict=True))
+        state = {domain.element: before.get(domain.element, 0) for domain in self._layout.state}
+        sides = (TEXT, "the model") if numbers[2] else ("the model", TEXT)
+        what = f"{event_in_words(event, {})} violates `{assumption_text(assumption)}` in {sides[0]}"
+        way = system.trace(system.path_to(system.encoding.state(state)))
+        return refute(PROPERTY, f"{what} and not in {sides[1]}{where(system, event, state)}", way)
 
     def _difference(self, system: GuardedSystem, numbers: Sequence[int]) -> Verdict:
         event, (possible, enabled, allowed, performed) = self._events[numbers[0]], numbers[1:5]

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from robosc.base.files.resources import locate
 from robosc.m2t.c.comments import string_literal
 from robosc.m2t.c.names import CNames
-from robosc.model.semantics.roles import event_name, is_from_cif
+from robosc.model.semantics.roles import assumptions, event_name, is_from_cif
 from robosc.synthesis.encoding import smallest
 
 if TYPE_CHECKING:
@@ -61,6 +61,7 @@ class CProgram:
             self.cells += [*([plant] if len(plant.locations) > 1 else []), *plant.variables]
         self.inputs: list[Element] = [parameter for plant in model.plants for parameter in plant.inputs]
         self.events = [event for plant in model.plants for event in plant.events]
+        self.assumptions = assumptions(model)
         for path, text in files.items():
             (folder / path).write_text(text, encoding="utf-8")
         names = CNames(model)
@@ -143,5 +144,6 @@ class CProgram:
             f"#define ENGINE_EVENTS {names.macro}_EVENT_COUNT\n"
             f"#define FOR_DURATIONS(DO) {' '.join(durations)}\n"
             + ("#define TIMES\n" if any(event.timer for event in self.events) else "")
+            + (f"#define ASSUMPTIONS {len(self.assumptions)}\n" if self.assumptions else "")
             + ("#define STEPWISE\n" if is_from_cif(self.model) else "")
         )

@@ -22,6 +22,7 @@
  *     ENGINE(name), ENGINE_EVENTS  `name` with the supervisor's prefix; the number of events of the supervisor
  *     FOR_DURATIONS(DO)            DO(number, member of the settings) for the durations that are set on the robot
  *     TIMES                        if the model has timers, so that functions of the supervisor take the time
+ *     ASSUMPTIONS                  the number of assumptions, if there are any
  *     STEPWISE                     if the supervisor has no control loop
  */
 #include "model.h"
@@ -50,6 +51,9 @@ typedef struct event {
     ENGINE(event) number;
     unsigned enabled, allowed, inputs, *input, effects;
     effect *effect;
+#ifdef ASSUMPTIONS
+    unsigned violated[ASSUMPTIONS];
+#endif
 } event;
 
 static const char *const names[EVENTS + 1] = { EVENT_NAMES "" };
@@ -132,9 +136,27 @@ static void differ(const event *one, const uint64_t *state, bool possible, bool 
     exit(0);
 }
 
+#ifdef ASSUMPTIONS
+/* Compares the assumptions that the event violates in the current state of robot and model. */
+static void violate(const event *one, const uint64_t *state)
+{
+    for (unsigned assumption = 0U; assumption < ASSUMPTIONS; ++assumption) {
+        const bool violated = ENGINE(violates)(&robot, one->number, assumption);
+        if (violated != holds(one->violated[assumption])) {
+            printf("violates %u %u %d", (unsigned)(one - events), assumption, violated);
+            tell(state, CELLS);
+            exit(0);
+        }
+    }
+}
+#endif
+
 /* Whether the event is possible in the current state of robot and model. If it is not, it must change nothing. */
 static bool asked(const event *one, const uint64_t *state)
 {
+#ifdef ASSUMPTIONS
+    violate(one, state);
+#endif
     const bool possible = holds(one->enabled);
     const bool enabled = ENGINE(enabled)(&robot, one->number);
     const bool performed = !enabled && ENGINE(perform)(&robot, one->number NOW);
@@ -361,8 +383,8 @@ static unsigned *numbers(unsigned length)
 }
 
 /* Reads the levels and nodes, the last code and levels of each domain, the initial state, and the events. Each event
- * has the condition that it is enabled, the condition that it is allowed with its inputs, its inputs, and the bits of
- * its effects. */
+ * has the condition that it is enabled, the condition that it is allowed with its inputs, its inputs, the bits of its
+ * effects, and for each assumption the condition that it violates it. */
 static void load(void)
 {
     truth = enough(calloc((size_t)number() + 1U, sizeof *truth));
@@ -402,6 +424,11 @@ static void load(void)
             one->effect[position].cell = (unsigned)number();
             one->effect[position].bit = numbers(domains[one->effect[position].cell].bits);
         }
+#ifdef ASSUMPTIONS
+        for (unsigned assumption = 0U; assumption < ASSUMPTIONS; ++assumption) {
+            one->violated[assumption] = (unsigned)number();
+        }
+#endif
     }
 }
 

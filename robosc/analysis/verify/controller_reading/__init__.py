@@ -5,8 +5,8 @@
 The generated C and the interpreter both execute the engine model: timers, batches, groups, the order of events and
 data, and the bound of silent events. `loop-translation` compares the C with the interpreter, so it cannot detect a
 fault of that model. `model_reading.controller` derives the meaning of the text from the pages of the language alone.
-`loop`, `times` and `topics` compare it with the engine model and the ROS graph. `data` compares the conditions of the
-engine model on the inputs of commands with the supervised model.
+`loop`, `times`, `violations` and `topics` compare it with the engine model and the ROS graph. `data` compares the
+conditions of the engine model on the inputs of commands with the supervised model.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from robosc.analysis.verify.controller_reading.data import DataComparison
 from robosc.analysis.verify.controller_reading.loop import LoopComparison
 from robosc.analysis.verify.controller_reading.times import Effort, TimeComparison
 from robosc.analysis.verify.controller_reading.topics import compare_topics
+from robosc.analysis.verify.controller_reading.violations import ViolationComparison
 from robosc.analysis.verify.model_reading.controller import ControllerText
 from robosc.analysis.verify.model_reading.lockstep import DifferenceError
 from robosc.analysis.verify.model_reading.names import NotReadError
@@ -37,7 +38,7 @@ __all__ = ["PROPERTY", "Effort", "validate_controller"]
 
 
 def validate_controller(models: Models, effort: Effort = ENOUGH) -> Verdict:
-    """Return whether timers, batches, groups, orders and bounds of the controller agree with the text.
+    """Return whether timers, batches, groups, orders, bounds and violations of assumptions agree with the text.
 
     The model has its supervisor. The topics of the ROS graph are compared if there is one. The property is skipped
     without the text, and if the plants differ from the text: model-translation reports the difference.
@@ -56,16 +57,20 @@ def validate_controller(models: Models, effort: Effort = ENOUGH) -> Verdict:
     controller, executed = ControllerText(text), models.engine
     times = TimeComparison(controller, plants, executed, effort)
     data = DataComparison(executed, effort.values)
+    violations = ViolationComparison(controller, plants, executed, effort.values)
     try:
         LoopComparison(controller, plants, executed).run()
         if models.rosgraph is not None:
             compare_topics(controller, plants, models.rosgraph)
         times.run()
+        violations.run()
         data.run()
     except DifferenceError as difference:
         return Verdict(PROPERTY, Outcome.REFUTED, "", difference.explanation, difference.trace, difference.onwards)
     number = sum(map(len, controller.times.values()))
     evidence = f"{format_count(number, 'time')}, {format_count(len(text.events), 'event')}"
+    if violations.is_sampled:
+        return Verdict(PROPERTY, Outcome.SAMPLED, f"{evidence}, without some violations of assumptions")
     if data.is_sampled:
         return Verdict(PROPERTY, Outcome.SAMPLED, f"{evidence}, without some conditions on the data of commands")
     if times.is_sampled:

@@ -174,8 +174,9 @@ class Machine:
     """A reading of a robot: slots with their values and initial values, marked locations, events, conditions.
 
     `conditions` are those of invariants and properties. Only the reading of the text has `topics`, the ROS name of each
-    communication, `order`, the plants of communications and components in the order of the text, and `provided`, the
-    `provide` statements of each choice of data with their constant data.
+    communication, `order`, the plants of communications and components in the order of the text, `provided`, the
+    `provide` statements of each choice of data with their constant data, and `assumed`, the conditions of the
+    assumptions about each event.
     """
 
     domains: dict[Slot, Domain] = field(default_factory=dict)
@@ -187,6 +188,7 @@ class Machine:
     topics: dict[Plant, str] = field(default_factory=dict)
     order: list[Plant] = field(default_factory=list)
     provided: dict[Plant, list[ProvidedConstant]] = field(default_factory=dict)
+    assumed: dict[EventName, dict[Plant, Condition]] = field(default_factory=dict)
 
 
 class ProvidedConstant(NamedTuple):

@@ -78,10 +78,16 @@ class Environment(NamedTuple):
 
 
 class Data(NamedTuple):
-    """Part of an event's data: its text word by word, and the path of properties to it; None for an element."""
+    """Part of an event's data or of a stored value: its text word by word.
+
+    `path` are the properties that lead to it; None for an element and for stored data. `segments` are the segments of
+    its access. `stored` is its variable; None if it is a part of the event's data.
+    """
 
     words: tuple[str, ...]
     path: tuple[str, ...] | None
+    segments: tuple[robosc.AccessSegment, ...] = ()
+    stored: tuple[robosc.Variable, Instance] | None = None
 
 
 class Names:
@@ -318,7 +324,7 @@ class Names:
         variable = access.item
         assert isinstance(variable, robosc.Variable)
         if self._is_data(variable.type):
-            start = self.leaf(Data((instance.name, ".", variable.name), None))
+            start = self.leaf(Data((instance.name, ".", variable.name), None, (), (variable, instance)))
             return (yield from self._part(start, access, place))
         return self._called(self.leaf(Slot(instance.plant, variable.name)), instance.name, variable.name)
 
@@ -375,12 +381,12 @@ class Names:
                 ex.Conditional(condition=body, then=number(value=1), otherwise=number(value=0)) for body in bodies
             ]
             combined: Any = ex.Addition
-            start: ex.Expression = number(value=0)
+            nothing: ex.Expression = number(value=0)
         else:
             everyone = quantifier.quantifier == robosc.Quantifier.all
             combined = ex.Conjunction if everyone else ex.Disjunction
-            start = ex.BooleanLiteral(value=everyone)
-        return reduce(lambda left, right: combined(left=left, right=right), bodies, start)
+            nothing = ex.BooleanLiteral(value=everyone)
+        return reduce(lambda left, right: combined(left=left, right=right), bodies) if bodies else nothing
 
     def _data(self, access: robosc.Access, place: Environment) -> Generator[Any, Any, ex.Expression]:
         path = None if access.item else ()
@@ -411,7 +417,7 @@ class Names:
             if segment.last is not None:
                 words += ["..", *self._words((yield segment.last, place))]
             words += ["]"]
-        return self.leaf(Data(tuple(words), path))
+        return self.leaf(Data(tuple(words), path, (*whole.segments, *access.segments), whole.stored))
 
     def words(self, expression: ex.Expression) -> tuple[str, ...] | None:
         """Return the text of an expression over data as words without parentheses; None if it reads slots."""

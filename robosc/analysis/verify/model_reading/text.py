@@ -83,6 +83,8 @@ _REASONS = {
 }
 #: Events that happen even if their data cannot be read.
 _ENDS = ("u_error", "u_canceled")
+#: Operators that join conditions of the node to one input.
+_JOINS = (ex.Conjunction, ex.Disjunction, ex.Implication)
 #: Events after which an action has no goal.
 _WITHOUT_GOAL = ("u_response", "u_error", "u_canceled", "c_reset")
 _UNITS = {robosc.TimeUnit.ms: 1, robosc.TimeUnit.s: 1000, robosc.TimeUnit.min: 60_000}
@@ -319,7 +321,8 @@ class _TextReading:
         written = self.names.written_out(expression, place)
         if name is not None:
             present = None if assigned is None else self.present(written, name)
-            written = walk(lambda part: self.replace_inputs(part[0], name, part[1]), (written, assigned))
+            is_guard = assigned is None
+            written = walk(lambda part: self.replace_inputs(part[0], name, part[1], is_guard), (written, assigned))
             if present is not None and assigned is not None:
                 written = ex.Conditional(condition=present, then=written, otherwise=self.names.leaf(assigned))
 
@@ -369,9 +372,13 @@ class _TextReading:
         return words
 
     def replace_inputs(
-        self, part: ex.Expression, name: EventName, assigned: Slot | None
+        self, part: ex.Expression, name: EventName, assigned: Slot | None, is_guard: bool
     ) -> Generator[Any, Any, ex.Expression]:
-        """Return the expression with its largest parts replaced by inputs of the event."""
+        """Return the expression with its largest parts replaced by inputs of the event.
+
+        The node computes conditions that are joined as one input. Where an end reads an array, only the operands of
+        `and` in a guard are inputs of their own.
+        """
         event = self.plants.events.get(name)
         inputs = event.element.inputs if event is not None else []
         computed = [(words_of(carried.text), carried.name) for carried in inputs if carried.text is not None]
@@ -379,9 +386,14 @@ class _TextReading:
         alike = {input_name: event.inputs[input_name] for text, input_name in computed if event and text == words}
         if alike:
             slot_range = None if assigned is None else self.machine.domains[assigned]
-            if isinstance(slot_range, range):
-                # Inputs of the same text differ in their range.
-                alike = {input_name: domain for input_name, domain in alike.items() if domain == slot_range}
+            if not isinstance(slot_range, range):
+                slot_range = self.declared(part, name)
+            # Inputs of the same text differ in their range.
+            alike = {
+                input_name: domain
+                for input_name, domain in alike.items()
+                if not isinstance(domain, range) or domain == slot_range
+            }
             if not alike:
                 raise UnlikeError("the plants have another range for a value computed from data", part)
             candidate = next(iter(alike))
@@ -404,29 +416,65 @@ class _TextReading:
         inside = operands(part)
         if not inside:
             return part
+        reads_array = name.name in _ENDS and "[" in self.names.all_words(part)
+        if reads_array and not (is_guard and isinstance(part, ex.Conjunction)):
+            raise UnlikeError("the plants have no input for a value computed from an array that may be missing", part)
         parts: list[ex.Expression] = []
         for number, operand in enumerate(inside):
             branch = isinstance(part, ex.Conditional) and number > 0
             parts.append((yield operand, assigned if branch else None))
+        if isinstance(part, _JOINS) and not reads_array and all(self.is_computed(operand, name) for operand in parts):
+            raise UnlikeError("the plants have several inputs for a condition that the node computes as one", part)
         return with_operands(part, parts)
+
+    def is_computed(self, part: ex.Expression, name: EventName) -> bool:
+        """Return whether a part with inputs is a condition that the node computes, or its negation."""
+        while isinstance(part, ex.Negation):
+            part = part.operand
+        target = self.names.meaning(part) if isinstance(part, robosc.Access) else None
+        if not isinstance(target, EventInput):
+            return False
+        carried = next(own for own in self.plants.events[name].element.inputs if own.name == target.name)
+        return carried.text is not None and self.machine.events[name].inputs[target.name] == BOOLEANS
+
+    def declared(self, part: ex.Expression, name: EventName) -> Domain | None:
+        """Return the values of the type with which the part of some data is declared; None if it has no finite type."""
+        target = self.names.meaning(part) if isinstance(part, robosc.Access) else None
+        if not isinstance(target, Data):
+            return None
+        if target.stored is not None:
+            variable, instance = target.stored
+            declared: Any = variable.type
+        else:
+            instance, declared = self.ports[name.plant][0], self.carried_type(name)
+        for segment in target.segments:
+            if isinstance(segment, robosc.PropertySegment):
+                declared = segment.property.type
+            elif isinstance(segment, robosc.IndexSegment) and segment.last is None:
+                declared = declared.type
+        return None if declared is None else self.names.domain(declared, instance.place)
 
     def carried(self, name: EventName, path: Sequence[str]) -> Domain:
         """Return the values of a part of an event's data."""
-        instance, communication = self.ports[name.plant]
-        declared: Any = None
-        if isinstance(communication, robosc.Message):
-            declared = communication.type
-        elif isinstance(communication, robosc.Service | robosc.Action) and name.name == "c_trigger":
-            declared = communication.requestType
-        elif isinstance(communication, robosc.Service):
-            declared = communication.responseType
-        elif isinstance(communication, robosc.Action):
-            feedback = name.name == "u_feedback"
-            declared = communication.feedbackType if feedback else communication.responseType
+        declared = self.carried_type(name)
         for part in path:
             declared = next(field.type for field in declared.type.properties if field.name == part)
-        domain = self.names.domain(declared, instance.place)
+        domain = self.names.domain(declared, self.ports[name.plant][0].place)
         return () if domain is None else domain
+
+    def carried_type(self, name: EventName) -> Any:
+        """Return the declared type of an event's data; None if it has none."""
+        communication = self.ports[name.plant][1]
+        match communication:
+            case robosc.Message():
+                return communication.type
+            case robosc.Service() | robosc.Action() if name.name == "c_trigger":
+                return communication.requestType
+            case robosc.Service():
+                return communication.responseType
+            case robosc.Action():
+                return communication.feedbackType if name.name == "u_feedback" else communication.responseType
+        return None
 
     # Provided data
 
@@ -483,6 +531,7 @@ class _TextReading:
             self.locations(plant, ("holding",), "holding", ["holding"], assumption)
             for name in dict.fromkeys(self.named(event, place) for event in assumption.target.events):
                 self.machine.events[name].participants.append(_only_where(condition, assumption))
+                self.machine.assumed.setdefault(name, {})[plant] = condition
 
     # Requirements
 
