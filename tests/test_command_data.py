@@ -53,7 +53,7 @@ SENTENCES = {
     "where a double that is read is not finite, a layer blocks the command": ["not_finite"],
     "the saved models have it": ["saved"],
     "generated nodes have it": ["generated"],
-    "reports name what forbids": ["reasons_of_a_layer"],
+    "reports name what forbids": ["reasons_of_a_layer", "reasons_of_synthesis"],
     "an integer outside its range is not judged": ["out_of_range"],
     "a command is withheld as one whose data are not finite": ["instead_of_forbidden_data"],
     "messages on change are sent again after others": ["on_change"],
@@ -618,3 +618,36 @@ def test_parameters_of_one_name(tmp_path: Path) -> None:
     )
     model = robosc.to_sct(robosc.load(robot))
     assert [len(plant.inputs) for plant in model.plants if plant.name == "message_v"] == [2]
+
+
+def test_reasons_of_synthesis() -> None:
+    """Synthesis is the reason where it forbids all data that a requirement permits."""
+    engine = Engine(supervised(SWITCH.replace("if value = 1 goto two", "if value = 1 goto broken") + ""))
+    assert engine.blocked_by(GO) == "synthesis"
+    assert engine.failing_requirements(GO) == []
+
+
+STORED = """robot Cart {
+  component Base {
+    outgoing message plan with identifier: "/plan", type: geometry_msgs/PoseStamped
+    incoming message go with identifier: "/go", type: geometry_msgs/PoseStamped
+    behaviour {
+      variable stored: geometry_msgs/PoseStamped
+      initial marked state ready { on response from plan do stored := value goto has_plan }
+      marked state has_plan {}
+    }
+  }
+  requirement go needs Base.has_plan and value.pose.position.x < 3.0
+  provide go with Base.stored
+}
+"""
+
+
+def test_stored_objects(tmp_path: Path) -> None:
+    """The simulation compares stored objects that are sent as they are."""
+    graph = graph_of(written(tmp_path, STORED))
+    for x, by in ((1.0, None), (5.0, "requirement")):
+        simulation = Simulation(graph.model, graph)
+        simulation.perform("message_plan.u_response", {"value": {"pose": {"position": {"x": x}}}})
+        simulation.perform("data_go.c_d1")
+        assert simulation.perform("message_go.c_trigger", {}).by == by

@@ -182,10 +182,11 @@ class EventGuard(expression.Located):
     requirement: expression.Expression | None
     requirements: MutableSequence[Requirement]
     synthesis: expression.Expression | None
+    someRequired: expression.Expression | None
     someData: expression.Expression | None
     explanation: str | None
     everEnabled: bool
-    def __init__(self, *, event: Event | None = ..., requirement: expression.Expression | None = ..., requirements: Iterable[Requirement] = ..., synthesis: expression.Expression | None = ..., someData: expression.Expression | None = ..., explanation: str | None = ..., everEnabled: bool | None = ..., source: Place | None = ...) -> None: ...
+    def __init__(self, *, event: Event | None = ..., requirement: expression.Expression | None = ..., requirements: Iterable[Requirement] = ..., synthesis: expression.Expression | None = ..., someRequired: expression.Expression | None = ..., someData: expression.Expression | None = ..., explanation: str | None = ..., everEnabled: bool | None = ..., source: Place | None = ...) -> None: ...
 
 class LocationReference(expression.Expression):
     """A boolean: true while the plant is in the location."""

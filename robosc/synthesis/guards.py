@@ -14,8 +14,10 @@ from robosc.synthesis.cover import separating_expression
 from robosc.synthesis.simplification import simplify
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from robosc.synthesis.bdd import Diagram
-    from robosc.synthesis.encoding import Encoding
+    from robosc.synthesis.encoding import Domain, Encoding
     from robosc.synthesis.projection import Projection
     from robosc.synthesis.relation import EventRelation
 
@@ -59,8 +61,8 @@ def permission(
     for the condition that synthesis adds.
 
     In each of these states, the plants enable the event and both parts of the guard hold exactly if the requirements
-    hold and the event leads to such a state again. The guard of a command with inputs reads them, and `someData` holds
-    where some inputs are allowed.
+    hold and the event leads to such a state again. The guard of a command with inputs reads them. `someRequired` and
+    `someData` hold where both parts allow some inputs.
     """
     step = relation.step if restricts else None
     states, domains = controlled.factor(relation.concerned)
@@ -81,14 +83,12 @@ def permission(
             for requirement in relation.requirements
             if (enabled & ~relation.condition_of(requirement)).satisfiable()
         )
-    where = relation.allowed_by(allowed) if relation.has_data else allowed
-    withheld = states & relation.available & ~where if relation.has_data else encoding.diagrams.false
-    if withheld.satisfiable():
-        guard.someData = (
-            separating_expression(encoding, where, withheld, domains)
-            if guard.everEnabled
-            else ex.BooleanLiteral(value=False)
-        )
+    where = allowed
+    if relation.has_data:
+        available = states & relation.available
+        permitted, where = relation.allowed_by(required), relation.allowed_by(allowed)
+        guard.someRequired = _separated(encoding, permitted, available & ~permitted, domains)
+        guard.someData = _separated(encoding, where, permitted & ~where, domains)
     domains = [*domains, *(encoding.layout.domains[carried] for carried in relation.event.inputs)]
     if allowed != required:
         guard.synthesis = (
@@ -99,6 +99,19 @@ def permission(
     encoding.diagrams.tidy()
     return Permission(
         relation, guard, controlled.states, where, unwritten=allowed != required and guard.synthesis is None
+    )
+
+
+def _separated(
+    encoding: Encoding, inside: Diagram, outside: Diagram, domains: Sequence[Domain]
+) -> ex.Expression | None:
+    """Return a condition that holds in all states of `inside` and in none of `outside`; None if that is always so."""
+    if not outside.satisfiable():
+        return None
+    return (
+        separating_expression(encoding, inside, outside, domains)
+        if inside.satisfiable()
+        else ex.BooleanLiteral(value=False)
     )
 
 

@@ -67,20 +67,26 @@ def _guard(
             _refuse_inputs_of_robot(event, taken)
             available[plant] = _possible(plant, taken, lower, with_some_data=True)
             data.append(possible[plant])
-    some = lower(guard.someData if guard else None)
     supervising = []
-    for part in (guard.requirement, guard.synthesis) if guard else (None, None):
-        term = lower(part)
+    for part, with_some_data in _supervisor_parts(guard):
+        term, state_part = lower(part), lower(with_some_data)
         if _reads_inputs(term):
             data.append(term)
-            term = some
-        supervising.append(term)
-    if some.constant != 1 and some not in supervising:
-        supervising[1] = junction(engine.And, [supervising[1], some])
+            term = state_part
+        supervising.append(junction(engine.And, [term, state_part]))
     assumed = [term for plant, term in available.items() if plant.kind == sct.PlantKind.assumption]
     others = [term for plant, term in available.items() if plant.kind != sct.PlantKind.assumption]
     parts = junction(engine.And, others), junction(engine.And, assumed), supervising[0], supervising[1]
     return GuardTerms(possible, *parts, junction(engine.And, parts), junction(engine.And, data))
+
+
+def _supervisor_parts(
+    guard: sct.EventGuard | None,
+) -> list[tuple[ex.Expression | None, ex.Expression | None]]:
+    """Return the two parts of a supervisor's guard, each with the states in which it allows some inputs."""
+    if guard is None:
+        return [(None, None), (None, None)]
+    return [(guard.requirement, guard.someRequired), (guard.synthesis, guard.someData)]
 
 
 def _reads_inputs(condition: Term) -> bool:

@@ -112,7 +112,7 @@ def share_conditions(
         if len(worthwhile) == len(terms_shared):
             break
         terms_shared = worthwhile
-    shared = SharedTerms(terms_shared, opposites)
+    shared = SharedTerms(_inner_first(SharedTerms(terms_shared, opposites)), opposites)
     for event, guard in guards.items():
         pending = list(shared.inside(shared.ask_for(guard)))
         visited = set()
@@ -123,6 +123,20 @@ def share_conditions(
                 shared.conditions[term].events.append(events[event])
                 pending += shared.inside(shared.operands(term))
     return shared
+
+
+def _inner_first(shared: SharedTerms) -> list[Term]:
+    """Return the shared terms, each after those that it refers to: a junction may refer to any part of its operands."""
+    ordered: dict[Term, None] = {}
+    pending = [(term, False) for term in reversed(shared.conditions)]
+    while pending:
+        term, is_visited = pending.pop()
+        if is_visited:
+            ordered[term] = None
+        elif term not in ordered:
+            pending.append((term, True))
+            pending += [(inner, False) for inner in reversed(shared.inside(shared.operands(term)))]
+    return list(ordered)
 
 
 def _find(guards: Iterable[GuardTerms], terms: Terms, *, incremental: bool) -> tuple[list[Term], dict[Term, Term]]:

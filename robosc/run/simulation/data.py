@@ -223,7 +223,11 @@ class EventData:
                 path, value = tuple(field.path), within_range(self._node.value(field.value, before), field.type)
                 wire = None if self._defaults is None else self._defaults.wire_type(event, path)
                 is_single = isinstance(wire, Basic) and wire.name == "float32"
-                changed[path] = single_precision(value) if is_single and isinstance(value, float) else value
+                changed[path] = single_precision(value) if is_single and isinstance(value, float) else _plain(value)
+        if () in changed:  # a stored object is the whole data
+            whole_data = changed.pop(())
+            fields.clear()
+            fields.update({(name,): value for name, value in whole_data.items()})
         fields.update(changed)
 
     def _label(self, event_input: sct.Input, data: Any = None) -> str:
@@ -415,6 +419,13 @@ class EventData:
         except DataError as error:
             literals = ", ".join(literal.name for literal in conversion.enumeration.literals)
             raise DataError(f"expected one of {literals}, or data that determines it: {error}") from None
+
+
+def _plain(value: Any) -> Any:
+    """Return JSON for a value: an object, or an array of objects, has the fields that were given."""
+    if isinstance(value, _EventValues):
+        return {} if value.value is _ABSENT else value.value
+    return list(map(_plain, value)) if isinstance(value, list | tuple) else value
 
 
 class _EventValues(NamedTuple):
