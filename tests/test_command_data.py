@@ -15,7 +15,7 @@ from robosc.language.configuration import Configuration
 from robosc.language.configuration.parameters import layer_parameters
 from robosc.m2t import xmi
 from robosc.m2t.models import Models
-from robosc.model import sct, validity
+from robosc.model import rosgraph, sct, validity
 from robosc.model.semantics.messages import sent_messages
 from robosc.run.runtime.core.event_loop import EventLoop
 from robosc.run.runtime.core.layer import Layer
@@ -31,7 +31,11 @@ if TYPE_CHECKING:
 
 #: Each sentence of the specification of conditions on data of commands, with the tests that hold it.
 SENTENCES = {
-    "in the condition of `needs` and `disables`, `value` is the data of the command": ["permissions", "disables"],
+    "in the condition of `needs` and `disables`, `value` is the data of the command": [
+        "permissions",
+        "disables",
+        "disables_by_a_field",
+    ],
     "in `if` of `on request to x`, of components and requirement automata, too": ["component", "automaton"],
     "in a controller, it is what `provide` computes, and ROS defaults": ["controller", "simulation"],
     "in a layer, it is what the controller sent": ["layer"],
@@ -212,6 +216,22 @@ def test_permissions() -> None:
 def test_disables() -> None:
     engine = Engine(supervised())
     assert [allows(engine, LAMP, i_trigger=level) for level in range(4)] == [True, True, False, False]
+
+
+@pytest.mark.parametrize("commands", ["Base.velocity", "{ Base.velocity, again }", "Left.move"])
+def test_disables_by_a_field(commands: str) -> None:
+    """The field is found although its command follows in the text."""
+    text = more(f"""requirement value.linear.z > 0.4 disables {commands}
+      component Other(ns: string) {{
+        incoming message move with identifier: ns + "/move", type: geometry_msgs/Twist
+        requirement value.linear.y > 0.4 disables move
+      }}
+      component Left is Other("/left")
+      component Again {{ incoming message again with identifier: "/again", type: geometry_msgs/Twist }}""")
+    assert rules(text) == []
+    assert rules(text.replace("z > 0.4", "w > 0.4")) == ["unresolved-reference"]
+    graph = robosc.to_rosgraph(robosc.load(text=text))
+    assert {"y", "z"} <= {step.name for step in graph.eAllContents() if isinstance(step, rosgraph.FieldStep)}
 
 
 #: A switch that the robot follows by its data, and that must not reach `broken`.

@@ -53,7 +53,7 @@ class AccessLinker(NameFindings):
         #: For each access in a requirement on several commands, the types along it for the data of each further one.
         self._others: dict[rsc.Access, list[list[Type]]] = {}
         self._properties: dict[rsc.ObjectDataType, Names] = {}
-        #: Elements in the index of an instance, which is linked before the instance.
+        #: Elements that are linked before their turn: in the index of an instance, or the command after `disables`.
         self._linked: set[ex.Located] = set()
 
     @abstractmethod
@@ -485,6 +485,7 @@ class AccessLinker(NameFindings):
         access = segment.eContainer()
         # The segments of an access come in order, and each continues from the type of the previous one.
         if access not in self._types:
+            self._commands(access)
             self._types[access] = [start_type(access, value_type(access))]
             self._others[access] = [[other] for other in value_types(access)[1:]] if access.value else []
         types = self._types[access]
@@ -499,6 +500,19 @@ class AccessLinker(NameFindings):
                 others.append(segment_type(others[-1], access.segments[len(others) - 1]))
             other = self._property(others[-1], name)
             others.append(UNKNOWN if other is None else declared_type(other.type))
+
+    def _commands(self, access: rsc.Access) -> None:
+        """Link the commands whose data an access reads; after `disables`, they follow in the text."""
+        requirement: ex.Located | None = access if access.value else None
+        while requirement is not None and not isinstance(requirement, rsc.CommunicationRequirement):
+            requirement = requirement.eContainer()
+        if requirement is None or requirement.target is None:
+            return
+        for command in requirement.target.communicationTypes:
+            names = self.file.references.get(command)
+            if names is not None and command.communicationType is None and command not in self._linked:
+                self._linked.add(command)
+                self._use(command, names)
 
     def _property_value(self, element: rsc.ObjectPropertyValue, name: Name) -> None:
         expected = object_value_type(element.eContainer())

@@ -103,6 +103,11 @@ def random_robot(seed: int) -> str:
     return _Draft(Random(seed)).text()  # noqa: S311 - the same robot on every run
 
 
+def random_mixture(seed: int) -> str:
+    """Return the text of such a robot with some other constructs: a fleet, a service, assumptions, orders and more."""
+    return _Mixture(Random(seed)).text()  # noqa: S311 - the same robot on every run
+
+
 class _Draft:
     def __init__(self, random: Random) -> None:
         self._random = random
@@ -138,15 +143,16 @@ robot Drawn {{
         marked = number == 0 or self._random.random() < 0.2
         prefix = f"{'initial ' * (number == 0)}{'marked ' * marked}"
         transitions = [
-            f"        on request to {command} if {self._condition(command, 1)}{self._goto()}"
+            f"        on request to {command} if {self._condition(command, 1)}{self._goto(assigns=command == 'go')}"
             for command in ("level", "light", "go")
             for _ in range(self._random.choice((0, 1, 1, 2)))
         ]
         ends = [f"        on {end} from go{self._goto()}" for end in ("response", "error", "canceled")]
         return "\n".join([f"      {prefix}state {name} {{", *transitions, *ends, "      }"])
 
-    def _goto(self) -> str:
-        kept = f" do kept := {self._random.randint(0, 2)}" if self._random.random() < 0.2 else ""
+    def _goto(self, *, assigns: bool = True) -> str:
+        """Return what a transition does; the request of a message assigns nothing."""
+        kept = f" do kept := {self._random.randint(0, 2)}" if self._random.random() < 0.2 and assigns else ""
         return kept + (f" goto {self._random.choice(self._states)}" if self._random.random() < 0.7 else "")
 
     def _requirement(self) -> str:
@@ -168,3 +174,77 @@ robot Drawn {{
         operator = self._random.choice(("<", "=", "!=", ">="))
         other = f"{owner}kept" if owner == "" and self._random.random() < 0.2 else str(self._random.randint(0, 2))
         return f"value {operator} {other}"
+
+
+class _Mixture(_Draft):
+    def text(self) -> str:
+        cells = self._random.random() < 0.5
+        parts = [self._cells() if cells else self._dock()]
+        other = f"Cell[{self._random.randint(1, 2)}].enter" if cells else "dock"
+        drawn = (self._automaton, self._assumption, self._order, self._reachable)
+        parts += [draw(other) for draw in self._random.sample(drawn, self._random.randint(1, 3))]
+        return super().text().rstrip().removesuffix("}") + "".join(f"  {part}\n" for part in parts) + "}\n"
+
+    def _cells(self) -> str:
+        number, condition = self._random.randint(0, 1), self._known()
+        requirement = self._random.choice(
+            (
+                f"Station.enter needs value < 1 or {condition}",
+                f"{condition} and value = 2 disables Station.enter",
+                "Station.enter needs (count Station: Station.inside) < 1",
+                "at most 1 Station.enter since response from seen",
+            )
+        )
+        return f"""\
+component Station(ns: string) {{
+    incoming message enter with identifier: ns + "/enter", type: integer(0..2)
+    outgoing message done with identifier: ns + "/done", type: none
+    behaviour {{
+      initial marked state outside {{ on request to enter if value > {number} goto inside }}
+      state inside {{ on response from done goto outside on request to enter if value = 0 }}
+    }}
+  }}
+  component Cell[1..2] is Station("/cell" + text(number))
+  requirement each Station: {requirement}"""
+
+    def _dock(self) -> str:
+        reason, condition = self._random.choice(("timeout", "failed", "unreadable")), self._known()
+        return f"""\
+component Dock {{
+    service dock with request: none, response: none
+    behaviour {{
+      initial marked state free {{ on request to dock goto busy }}
+      state busy {{
+        on response from dock goto free
+        on error from dock if error {self._random.choice(("=", "!="))} {reason} goto broken
+        on error from dock goto free
+      }}
+      state broken {{ on request to dock goto busy }}
+    }}
+  }}
+  requirement dock needs {condition}"""
+
+    def _automaton(self, other: str) -> str:
+        conditions = [self._condition("level", 1, "Base.") for _ in range(2)]
+        return f"""\
+requirement Turns: automaton {{
+    initial marked state mine {{ on request to Base.level if {conditions[0]} goto yours on request to {other} }}
+    {self._random.choice(("", "marked "))}state yours {{ on request to Base.level if {conditions[1]} goto mine }}
+  }}"""
+
+    def _assumption(self, _other: str) -> str:
+        return f"assume {self._random.choice(('seen', 'response from go'))} needs {self._known()} or {self._known()}"
+
+    def _order(self, other: str) -> str:
+        before, after = self._random.sample(("Base.light", "Base.level", other), 2)
+        return "requirement " + self._random.choice(
+            (f"{after} after {before}", f"{after} after each {before}", f"at most 2 {after} since response from seen")
+        )
+
+    def _reachable(self, _other: str) -> str:
+        premise = self._random.choice(("", f" from {self._known()}"))
+        return f"requirement reachable {self._known()}{premise}"
+
+    def _known(self) -> str:
+        place = self._random.choice((f"Base.{self._random.choice(self._states)}", "Person.near", "Base.kept > 0"))
+        return f"{self._random.choice(('', '!'))}({place})"

@@ -15,23 +15,24 @@ from robosc.engine import Engine
 from robosc.engine.state import Domain
 from robosc.language.configuration import Configuration
 from robosc.m2t import cif
+from robosc.m2t.models import Models
 from robosc.model import sct
 from robosc.model.semantics.roles import event_name
 from robosc.synthesis import synthesize
-from tests.analysis.verify.commands import models_of, random_robot
+from tests.analysis.verify.commands import models_of, random_mixture, random_robot
 from tests.searching import examples
 from tests.synthesis.oracle import Oracle, State
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from robosc.m2t.models import Models
-
     Data = dict[sct.Input, Any]
 
 pytestmark = pytest.mark.slow
 #: Number of robots in a part of the search.
 _PART = 10
+#: Largest number of states of a robot that the explicit search takes.
+_FEW = 40
 
 
 @dataclass(frozen=True)
@@ -122,6 +123,29 @@ def test_random_commands(part: int, tmp_path: Path) -> None:
         assert [verdict for verdict in promises if verdict.outcome is Outcome.REFUTED] == [], text
     assert compared
     assert withheld
+
+
+@pytest.mark.parametrize("part", range(examples(20) // _PART))
+def test_random_mixtures(part: int) -> None:
+    """Conditions on data beside fleets, services, assumptions, orders and reachable states, also in CIF."""
+    compared = 0
+    for seed in range(part * _PART, (part + 1) * _PART):
+        text = random_mixture(seed)
+        robot = robosc.load(text=text)
+        model = robosc.to_sct(robot)
+        result = synthesize(model)
+        if result.uncontrolled_states > _FEW:
+            continue
+        oracle = DataOracle(model)
+        assert result.controlled_states == len(oracle.controlled), text
+        compared += 1
+        if result.supervisor is not None:
+            model.supervisor = result.supervisor
+            models = Models(model, robosc.to_rosgraph(robot), robot)
+            check_permissions(models, oracle)
+            verdict = validate_cif(model, dict(cif.generate(models, Configuration())))
+            assert verdict.outcome is not Outcome.REFUTED, text
+    assert compared
 
 
 def test_a_robot_that_synthesis_restricts_is_drawn(tmp_path: Path) -> None:
