@@ -81,12 +81,6 @@ def _basic_type(name: str) -> Repair | None:
     return Repair(hint, choices=(basic,)) if name[-1].isdigit() else Repair(hint, basic)
 
 
-def _is_disabled(element: ex.Located) -> bool:
-    """Return whether an element names a command after `disables`."""
-    commands = element.eContainer() if isinstance(element, rsc.CommunicationReference) else None
-    return isinstance(commands, rsc.CommunicationTypeSet) and isinstance(commands.eContainer(), rsc.DisablesRequirement)
-
-
 class Linker(AccessLinker):
     """Links one file whose libraries are linked."""
 
@@ -126,8 +120,7 @@ class Linker(AccessLinker):
     def _uses(self) -> None:
         """Link the names that use declarations; bare reasons last: they depend on the other names."""
         reasons: dict[rsc.Access, Mapping[str, Name]] = {}
-        # `value` before `disables` needs the commands after it.
-        for element, names in sorted(self.file.references.items(), key=lambda item: not _is_disabled(item[0])):
+        for element, names in list(self.file.references.items()):
             checkpoint()
             if isinstance(element, rsc.Access) and self._may_be_reason(element):
                 reasons[element] = names
