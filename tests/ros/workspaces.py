@@ -39,6 +39,8 @@ LATE = HERE / "late_arrival"
 QUEUED = HERE / "events_executor"
 #: A managed node with times, stored data, parameters, and a command that it sends on change.
 MANAGED = HERE / "managed"
+#: A robot with assumptions, limits, conditions on the data of commands, and comparisons with stored values.
+RESTRICTED = HERE / "restricted"
 CPP = HERE.parent / "m2t" / "cpp"
 RUNTIME = HERE.parent / "run" / "runtime"
 
@@ -123,6 +125,9 @@ ROS2_PACKAGES = [
     Package("careless_controller", HERE / "ends" / "careless.rscd", "ros2"),
     Package("managed_carrier", HERE / "ends" / "carrier.rscd", "ros2", HERE / "ends" / "managed-config.json"),
     Package("managed_porter", CPP / "porter.rscd", "ros2", CPP / "managed-porter-config.json", with_tests=True),
+    Package("hauler_controller", RESTRICTED / "hauler.rscd", "ros2", RESTRICTED / "controller-config.json"),
+    Package("hauler_layer", RESTRICTED / "hauler.rscd", "ros2-layer", RESTRICTED / "layer-config.json"),
+    Package("managed_hauler", RESTRICTED / "hauler.rscd", "ros2", RESTRICTED / "managed-config.json"),
     Package("managed_watch", MANAGED / "watch.rscd", "ros2", MANAGED / "controller-config.json"),
 ]
 
