@@ -71,7 +71,9 @@ def _field(sent: Sent, declared: robosc.DataType, path: Sequence[str]) -> Any:
     value: Sent | None = sent
     kind: Any = declared
     for name in path:
-        kind = next(field.type for field in kind.type.properties if field.name == name)
+        named = kind.type if isinstance(kind, robosc.ComplexDataTypeReference) else None
+        properties = named.properties if isinstance(named, robosc.ObjectDataType) else ()
+        kind = next((field.type for field in properties if field.name == name), None)
         value = value.get(name) if isinstance(value, dict) else None
     if isinstance(value, dict):
         raise _UnknownError
