@@ -262,7 +262,7 @@ def test_library(tmp_path: Path) -> None:
     assert Engine(model).violated_assumptions("message_Left_done.u_response") != []
     (tmp_path / "machines.rscd").write_text(LIBRARY.replace("assume outer: Machine.done", "assume outer: told"))
     messages = [finding.message for finding in robosc.check(robosc.load(tmp_path / "pair.rscd"))]
-    assert any("about one component" in message for message in messages)
+    assert any("expected one component" in message for message in messages)
 
 
 def test_name() -> None:

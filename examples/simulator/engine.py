@@ -148,8 +148,9 @@ class SupervisedNode:
 
     def receive(self, topic, data):
         """Handle a command of the controller, and forward it to the world if the layer permits it."""
-        if self._layer.passes(self._sendings[topic]):
-            self._world.receive(topic, data)
+        forwarded = self._layer.forwarded(self._sendings[topic], Sent(data))
+        if forwarded is not None:
+            self._world.receive(topic, _plain(forwarded))
 
     def work(self):
         """Run all functions that are due now."""
@@ -301,6 +302,9 @@ class Sent:
         self.__dict__["_data"] = data
 
     def __getattr__(self, name):
+        if name.startswith("_"):
+            # A copy of an object requests these attributes before it has data.
+            raise AttributeError(name)
         value = self._data.setdefault(name, {})
         return Sent(value) if isinstance(value, dict) else value
 

@@ -169,7 +169,7 @@ def expanded_for(
 ) -> ex.Expression:
     """Return the expanded expression. In a requirement, `value` has the type of the command's data."""
     expanded = instances.expanded(expression, within)
-    if not isinstance(carrier, PortInstance):
+    if not isinstance(carrier, PortInstance) or not _reads_command(expanded):
         return expanded
     return read_from(expanded, declared_type(sent_type(carrier.communication)))
 
@@ -184,8 +184,23 @@ def _statement_needs(instances: Instances) -> Iterator[tuple[ex.Expression | Non
 
 def commands(instances: Instances, required: Statement[robosc.CommunicationRequirement]) -> list[PortInstance]:
     """Return the commands that a requirement restricts, each once."""
-    named = (instances.port(reference, required.within) for reference in required.element.target.communicationTypes)
+    target = required.element.target
+    references = target.communicationTypes if target else ()
+    named = (instances.port(reference, required.within) for reference in references)
     return list(dict.fromkeys(port for port in named if port is not None))
+
+
+def _carriers(
+    instances: Instances, required: Statement[robosc.CommunicationRequirement]
+) -> Sequence[PortInstance] | tuple[None]:
+    """Return the commands whose data the condition of a requirement reads. A condition without data has None."""
+    expanded = instances.expanded(required.element.condition, required.within) if required.element.condition else None
+    return commands(instances, required) if _reads_command(expanded) else (None,)
+
+
+def _reads_command(condition: ex.Expression | None) -> bool:
+    """Return whether an expanded condition of a requirement reads the data of the command."""
+    return any(access.value for access in accesses(condition))
 
 
 def _remembered(
@@ -203,7 +218,7 @@ def _remembered(
         yield goal.element.condition, goal.within, None
         yield goal.element.premise, goal.within, None
     for required in instances.statements(robosc.CommunicationRequirement):
-        yield from ((required.element.condition, required.within, port) for port in commands(instances, required))
+        yield from ((required.element.condition, required.within, port) for port in _carriers(instances, required))
     for assumed in instances.statements(robosc.Assumption):
         yield assumed.element.condition, assumed.within, None
     for provided in (statement for port in instances.ports() for statement in instances.provide_statements(port)):
@@ -236,6 +251,9 @@ def _accesses(expression: ex.Expression | None) -> list[robosc.Access]:
 def _accesses_of_supervisor(expression: ex.Expression | None, readings: Sequence[InputRead]) -> Iterator[robosc.Access]:
     """Iterate over the accesses in an expression except those in values that the node computes."""
     computed = {reading.part for reading in readings if isinstance(reading.source, StateValue)}
+    if not computed:
+        yield from accesses(expression)
+        return
     pending = [expression]
     while pending:
         part = pending.pop()
@@ -259,6 +277,8 @@ def read_data(
     """
     port, event = _event(instances, within, carrier)
     if expression is None or port is None or event is None:
+        return
+    if isinstance(carrier, PortInstance) and not _reads_command(expression):
         return
     bounds = None if variable is None else _bounds(variable.type)
     value = declared_type(data_type(port.communication, event))

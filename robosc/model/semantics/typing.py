@@ -168,8 +168,9 @@ def value_type(element: ex.Located) -> Type | None:
 def value_types(element: ex.Located) -> Sequence[Type]:
     """Return the types of `value` at a place in the model; none if there is no `value`.
 
-    Inside an enum, `value` is the enum's source. Inside a transition, it is the data of its event; inside a limit,
-    the data of its message. In the condition of a requirement, it is the data of each of its commands.
+    Inside an enum, `value` is the enum's source. Inside a transition, it is the data of its event; only the guard may
+    read that of a request. Inside a limit, it is the data of its message. In the condition of a requirement, it is the
+    data of each of its commands.
     """
     inside, around = None, element
     while around is not None:
@@ -177,7 +178,8 @@ def value_types(element: ex.Located) -> Sequence[Type]:
             case rsc.EnumDataType():
                 return (declared_type(around.type),)
             case rsc.ResultTransition():
-                if around.resultType == rsc.ResultType.request and inside is not around.guard:
+                in_guard = inside is not None and inside is around.guard
+                if around.resultType == rsc.ResultType.request and not in_guard:
                     return ()
                 kind = event_data_type(_communication(around.communicationType), around.resultType)
                 return () if kind is None else (kind,)

@@ -128,7 +128,7 @@ requirement ${1:Name}: automaton {
         Snippet("datatype object", "datatype object ${1:Name} {\n  ${2:field}: ${3:double}\n}$0"),
     ],
     "assume": [Snippet("assume …", "assume ${1:A1}: ${2:event} needs ${3:condition}$0")],
-    "limit": [Snippet("limit …", "limit ${1:message} with ${2:data} if ${3:condition}$0")],
+    "limit": [Snippet("limit …", "limit ${1:command} with ${2:data} if ${3:condition}$0")],
     "provide": [Snippet("provide …", "provide ${1:communication} with ${2:data}$0")],
     "on": [Snippet("on response from …", "on response from ${1:communication} goto ${2:state}$0")],
 }

@@ -54,6 +54,7 @@ def test_as_json(run: Run) -> None:
             {"event": "service_rinse.c_trigger", "inputs": {}},
             {"event": "message_level.u_response", "inputs": {"i_response": 2}},
         ],
+        "data": [],
         "plants": [],
         "requirements": [
             {

@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 _GUARD = Place(None, "a guard reads states and variables, and `value` is the data of one event")
-_REQUIREMENT = Place(None, "a requirement reads states and variables, and `value` is the data of one event")
+_REQUIREMENT = Place(None, "this condition reads states and variables, and `value` is the data of one event")
 _ASSUMPTION = Place(None, "an assumption reads the state before the event, and `value` is the data of the event")
 _PROVIDE = Place(None, "provided data comes from states and variables, and `value` is the data of one event")
 _FUNCTION = Place(None, "a function computes its value from its parameters", Restriction.FUNCTION)
