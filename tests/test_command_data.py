@@ -671,3 +671,13 @@ def test_stored_objects(tmp_path: Path) -> None:
         simulation.perform("message_plan.u_response", {"value": {"pose": {"position": {"x": x}}}})
         simulation.perform("data_go.c_d1")
         assert simulation.perform("message_go.c_trigger", {}).by == by
+
+
+def test_functions_of_data() -> None:
+    """A function of the data may read parameters, also if its parameter has a ROS type."""
+    text = GOALS.replace("value.order < 5", "small(value)").replace(
+        "  component Door",
+        "  parameter most: integer(0..9) = 5\n"
+        "  function small(goal: example_interfaces/Fibonacci): boolean = goal.order < most\n\n  component Door",
+    )
+    assert rules(text) == []

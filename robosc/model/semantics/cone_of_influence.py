@@ -171,7 +171,10 @@ def expanded_for(
     expanded = instances.expanded(expression, within)
     if not isinstance(carrier, PortInstance) or not _reads_command(expanded):
         return expanded
-    return read_from(expanded, declared_type(sent_type(carrier.communication)))
+    key = expanded, carrier.communication
+    if key not in instances.of_commands:
+        instances.of_commands[key] = read_from(expanded, declared_type(sent_type(carrier.communication)))
+    return instances.of_commands[key]
 
 
 def _statement_needs(instances: Instances) -> Iterator[tuple[ex.Expression | None, Instance | None, Carrier | None]]:

@@ -185,6 +185,8 @@ class Instances:
         self._originals: dict[robosc.InstanceQuantifier, robosc.InstanceQuantifier] = {}
         resolved = {} if resolved is None else resolved
         self.expanded = Expansion(self)
+        #: Expanded conditions of requirements on a communication, with `value` of the type of its data.
+        self.of_commands: dict[tuple[ex.Expression, robosc.CommunicationType], ex.Expression] = {}
         for definition in base.definitions:
             if isinstance(definition, robosc.Component) and definition.first is not None:
                 fleet = self._fleets[definition] = _fleet(definition, base, resolved)

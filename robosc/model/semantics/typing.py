@@ -230,7 +230,9 @@ def _resolved(access: rsc.Access, value: Type) -> list[rsc.ObjectProperty | None
     for segment in access.segments:
         original = _property_of(segment)
         prop: rsc.ObjectProperty | None = None
-        if original is not None:
+        if original is not None and kind == ObjectType(original.eContainer()):
+            prop, kind = original, declared_type(original.type)
+        elif original is not None:
             properties = kind.definition.properties if isinstance(kind, ObjectType) else ()
             prop = next((other for other in properties if other.name == original.name), None)
             kind = declared_type(prop.type if prop else None)
