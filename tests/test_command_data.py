@@ -674,10 +674,8 @@ def test_stored_objects(tmp_path: Path) -> None:
 
 
 def test_functions_of_data() -> None:
-    """A function of the data may read parameters, also if its parameter has a ROS type."""
-    text = GOALS.replace("value.order < 5", "small(value)").replace(
-        "  component Door",
-        "  parameter most: integer(0..9) = 5\n"
-        "  function small(goal: example_interfaces/Fibonacci): boolean = goal.order < most\n\n  component Door",
-    )
+    """A function of the data may read parameters, also if its own parameter has a ROS type."""
+    text = more("""parameter most: double = 0.5
+      function slow(speed: geometry_msgs/Vector3): boolean = hypot(speed.x, speed.y) < most
+      requirement Base.velocity needs slow(value.linear)""")
     assert rules(text) == []
