@@ -61,6 +61,7 @@ SENTENCES = {
     "an integer outside its range is not judged": ["out_of_range"],
     "a command is withheld as one whose data are not finite": ["instead_of_forbidden_data"],
     "messages on change are sent again after others": ["on_change"],
+    "the log of a layer has the data that decide": ["log_of_a_layer"],
 }
 
 #: A base that drives slowly near a person, with a lamp that a requirement restricts by its data.
@@ -457,11 +458,11 @@ def test_simulation(tmp_path: Path) -> None:
 class Bench:
     """A layer of the cart."""
 
-    def __init__(self, folder: Path, text: str = BASE) -> None:
+    def __init__(self, folder: Path, text: str = BASE, log: Path | str = "") -> None:
         self.graph = graph_of(written(folder, text))
         self.port = FakePort()
         configuration = Configuration()
-        values = {each.name: each.default for each in layer_parameters(self.graph, configuration, "")}
+        values = {each.name: each.default for each in layer_parameters(self.graph, configuration, str(log))}
         loop = EventLoop(lambda: self.port.time)
         self.layer = Layer(self.graph, Settings(values, configuration), self.port, loop)
         self.layer.start()
@@ -679,3 +680,18 @@ def test_functions_of_data() -> None:
       function slow(speed: geometry_msgs/Vector3): boolean = hypot(speed.x, speed.y) < most
       requirement Base.velocity needs slow(value.linear)""")
     assert rules(text) == []
+
+
+def test_log_of_a_layer(tmp_path: Path) -> None:
+    """The log has the data that decide, so that a simulation of it decides alike."""
+    bench = Bench(tmp_path, SWITCH.replace("requirement never C.broken", ""), log=tmp_path / "log.jsonl")
+    assert bench.passes("go", Record(data=1))
+    assert not bench.passes("go", Record(data=2))
+    assert bench.passes("go", Record(data=0))
+    bench.layer.close()
+    lines = [json.loads(line) for line in (tmp_path / "log.jsonl").read_text().splitlines()]
+    assert [(line["direction"], line["data"]) for line in lines] == [
+        ("out", {"value": 1}),
+        ("blocked", {"value": 2}),
+        ("out", {"value": 0}),
+    ]

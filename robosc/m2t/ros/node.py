@@ -143,6 +143,7 @@ class Message:
     may hold headers for the node to fill in; "" is the whole message. `limits` change the data; they read `before`, a
     copy of it. `inputs` are statements that set the supervisor's inputs from the data, `message`. They may read
     elements of arrays if `inputs_may_fail`. `doubles` are statements that require the doubles of both to be finite.
+    `decisive` is the data that the inputs read, for the log of a layer.
     """
 
     word: str
@@ -158,6 +159,7 @@ class Message:
     doubles: list[str]
     inputs: list[str]
     inputs_may_fail: bool
+    decisive: reports.EventData | None
 
 
 @dataclass(frozen=True)
@@ -639,6 +641,7 @@ class GeneratedNode:
             [*map(_required, doubles), *(self._required_stored(*each) for each in stored.items())],
             [self._command_input(assignment) for assignment in sending.inputs],
             any(reads_elements(assignment.value) or _is_ranged(assignment) for assignment in sending.inputs),
+            reports.received_parts([assignment.value for assignment in sending.inputs], self._names),
         )
 
     def _required_stored(self, name: str, stored: ex.Expression) -> str:

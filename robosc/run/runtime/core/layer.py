@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING, Any
 from robosc.base.ros_types import Section
 from robosc.engine import Settings as LoopSettings
 from robosc.model import engine, rosgraph
+from robosc.model.semantics.messages import sent_messages
 from robosc.model.semantics.roles import assumption_text, event_name
 from robosc.run.runtime.core.composer import Composer
 from robosc.run.runtime.core.event_handler import EventHandler
+from robosc.run.runtime.core.event_log import ReceivedData
 from robosc.run.runtime.core.node_data import UNSENDABLE, why_unsendable
 from robosc.run.runtime.core.settings import SafeMessages
 from robosc.run.runtime.core.times import RESOLUTION_MS
@@ -50,6 +52,12 @@ class Layer(EventHandler):
         publishers = {sending: publisher for publisher in graph.publishers for sending in publisher.sendings}
         #: Publishers of the messages of `on_blocked`, in the order of the configuration.
         self._publishers = {sending: publishers[sending] for sending in (safe or SafeMessages()).on_blocked}
+        #: The data of commands that the supervisor decides with, for the event log.
+        self._decisive = {
+            sending.event: ReceivedData(assigned.value for assigned in sending.inputs)
+            for _, _, sending in sent_messages(graph)
+            if sending.inputs
+        }
         #: Messages of `on_blocked` that were forwarded last: the layer sends one when it blocks the next.
         self._forwarded: set[rosgraph.Sending] = set()
 
@@ -90,18 +98,20 @@ class Layer(EventHandler):
 
     def forwarded(self, sending: rosgraph.Sending, message: Message) -> Message | None:
         """Return a controller's command with its limits if it passes; report it as blocked and return None if not."""
-        limited, inputs = message, dict[str, Any]()
+        inputs, fault = dict[str, Any](), ""
+        self._sent = message
         try:
-            limited = self._composer.limited(sending, message)
-            inputs = self._composer.inputs(sending, limited)
-        except UNSENDABLE as fault:
-            if not self._violations.stopped:
-                self._block(sending, "data", [why_unsendable(fault)])
-                return None
-        self._sent = limited
-        passes = self._passes(sending, inputs)
-        self._sent = None
-        return limited if passes else None
+            self._sent = self._composer.limited(sending, message)
+            inputs = self._composer.inputs(sending, self._sent)
+        except UNSENDABLE as error:
+            fault = why_unsendable(error)
+        if fault and not self._violations.stopped:
+            self._block(sending, "data", [fault])
+            passes = False
+        else:
+            passes = self._passes(sending, inputs)
+        forwarded, self._sent = self._sent, None
+        return forwarded if passes else None
 
     def _block(self, sending: rosgraph.Sending, reason: str, because: Sequence[str]) -> None:
         """Report a blocked command, and send the message of `on_blocked` in its place."""
@@ -138,7 +148,7 @@ class Layer(EventHandler):
     def _report_blocked(self, event: sct.Event, reason: str, because: Sequence[str]) -> None:
         self._blocked.add(event)
         self._publish_blocked(event, reason, because)
-        self._log.write(self._port.now(), "blocked", event_name(event))
+        self._log.write(self._port.now(), "blocked", event_name(event), self._data_of_command(event))
 
     def _faults(self, parts: Parts) -> list[str]:
         blocked = [f"{sending.name} was blocked" for sending in parts.commands if sending.event in self._blocked]
@@ -161,4 +171,10 @@ class Layer(EventHandler):
     def _act(self, event: sct.Event) -> tuple[str, Mapping[str, Json] | None] | None:
         if event in self.goals:
             self.goals[event].cancel()
-        return ("out", None) if event in self._outgoing else None
+        return ("out", self._data_of_command(event)) if event in self._outgoing else None
+
+    def _data_of_command(self, event: sct.Event) -> Mapping[str, Json] | None:
+        """Return the data of the present command that the supervisor decides with, for the event log."""
+        if event not in self._decisive or self._sent is None or not self._log.active:
+            return None
+        return self._decisive[event].read(self._data, self._sent)
