@@ -30,6 +30,7 @@ if sys.platform != "win32":
 
 if TYPE_CHECKING:
     from robosc.analysis.observations import Weight
+    from robosc.model import expression as ex
     from robosc.synthesis import Counts, Statistics, Synthesis
 
 #: Effort limit for one guard, in visited nodes: some tenths of a second, and far more than a readable guard needs.
@@ -246,9 +247,19 @@ def _peak_bytes() -> int | None:
     return most if sys.platform == "darwin" else most * 1024
 
 
+class _GuardPrinter(SctPrinter):
+    """Prints a guard with the texts of the conditions that the node computes from data."""
+
+    def atom(self, expression: ex.Expression) -> str:
+        """Return a computed condition by its text, in parentheses."""
+        if isinstance(expression, sct.InputReference) and expression.input.text is not None:
+            return f"({expression.input.text})"
+        return super().atom(expression)
+
+
 def _event(event: sct.Event, guard: sct.EventGuard | None, synthesis: Synthesis) -> dict[str, Any]:
     """Return an event with its guard. Without a guard, `ever_enabled` depends on the reachable states of the plants."""
-    shown = RobotPrinter() if event.kind in (sct.EventKind.plain, sct.EventKind.input) else SctPrinter()
+    shown = RobotPrinter() if event.kind in (sct.EventKind.plain, sct.EventKind.input) else _GuardPrinter()
     parts = [part for part in (guard.requirement, guard.synthesis) if part] if guard else []
     whole = conjunction(map(copy_tree, parts))
     unwritten = synthesis.unwritten.get(event)
