@@ -26,8 +26,10 @@ if TYPE_CHECKING:
     from robosc.model.semantics.instances import Instances
 
 
-#: Parts of a message: a line of the text, a topic or type, a name, and a number.
-_PART = re.compile(r"line \d+|[^\s`]*/[^\s`]*|[^\W\d]\w*|\d+")
+#: Parts of a message: a line of the text; text without spaces; names and numbers in it, unless it is a topic or a type.
+_LINE = re.compile(r"(\bline \d+)")
+_RUN = re.compile(r"[^\s`]+")
+_WORD = re.compile(r"[^\W\d]\w*|\d+")
 
 
 class FleetFaults:
@@ -41,9 +43,11 @@ class FleetFaults:
         """Return whether a finding is the first one about its fault. A finding about no fleet always is."""
         element = finding.element
         is_fleet = isinstance(element, rsc.Component) and element.first is not None
-        if not is_fleet and self._members.keys().isdisjoint(_PART.findall(finding.message)):
+        runs = (run for run in _RUN.findall(finding.message) if "/" not in run)
+        if not is_fleet and not any(word in self._members for run in runs for word in _WORD.findall(run)):
             return True
-        message = _PART.sub(self._generalized, finding.message)
+        parts = enumerate(_LINE.split(finding.message))
+        message = "".join(part if is_line % 2 else _RUN.sub(self._generalized, part) for is_line, part in parts)
         # The written-out copies of a requirement with `each` have one place.
         key = (rule, place(element), finding.places(), message)
         is_new = key not in self._reported
@@ -53,9 +57,11 @@ class FleetFaults:
     def _generalized(self, part: re.Match[str]) -> str:
         """Return a part of a message without the number of an instance."""
         text = part[0]
-        if text in self._members:
-            return self._members[text].name
-        return re.sub(r"\d+", "#", text) if text.isdecimal() or "/" in text else text
+        return re.sub(r"\d+", "#", text) if "/" in text else _WORD.sub(self._general_word, text)
+
+    def _general_word(self, word: re.Match[str]) -> str:
+        text = word[0]
+        return self._members[text].name if text in self._members else "#" if text.isdecimal() else text
 
 
 def reference_key(reference: rsc.CommunicationReference) -> tuple[Any, ...]:

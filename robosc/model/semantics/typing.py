@@ -179,7 +179,8 @@ def value_types(element: ex.Located) -> Sequence[Type]:
                 return (declared_type(around.type),)
             case rsc.ResultTransition():
                 in_guard = inside is not None and inside is around.guard
-                if around.resultType == rsc.ResultType.request and not in_guard:
+                is_request = around.communicationType is not None and around.resultType == rsc.ResultType.request
+                if is_request and not in_guard:
                     return ()
                 kind = event_data_type(_communication(around.communicationType), around.resultType)
                 return () if kind is None else (kind,)

@@ -179,7 +179,7 @@ def test_the_c_without_its_condition_on_data(tmp_path: Path) -> None:
     models = models_of(GUARD, tmp_path)
     files = generated_c(models)
     (source,) = [name for name in files if name.endswith("_supervisor.c")]
-    condition = "    if (!permits_inputs(&self->state, &self->inputs, event)) {\n        return false;\n    }\n"
+    condition = "    if (!inputs_permitted(&self->state, &self->inputs, event)) {\n        return false;\n    }\n"
     assert files[source].count(condition) == 1
     files[source] = files[source].replace(condition, "")
     explanation = validate_c(models.sct, files).explanation
