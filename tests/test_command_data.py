@@ -12,18 +12,13 @@ from click.testing import CliRunner
 import robosc
 from robosc.engine import ControlLoop, Engine, Hooks
 from robosc.language.configuration import Configuration
-from robosc.language.configuration.parameters import layer_parameters
 from robosc.m2t import xmi
 from robosc.m2t.models import Models
 from robosc.model import rosgraph, sct, validity
-from robosc.model.semantics.messages import sent_messages
-from robosc.run.runtime.core.event_loop import EventLoop
-from robosc.run.runtime.core.layer import Layer
-from robosc.run.runtime.core.settings import Settings
 from robosc.run.simulation.simulation import Simulation
 from robosc.tools.cli import main
 from tests.language.second_edition import errors
-from tests.run.runtime.fake import FakePort, Record, World
+from tests.run.runtime.fake import LayerBench, Record, World
 from tests.run.runtime.fake import supervised as graph_of
 
 if TYPE_CHECKING:
@@ -455,49 +450,25 @@ def test_simulation(tmp_path: Path) -> None:
     assert simulation.perform(VELOCITY, {}).by == "requirement", "what `provide` gives"
 
 
-class Bench:
-    """A layer of the cart."""
-
-    def __init__(self, folder: Path, text: str = BASE, log: Path | str = "") -> None:
-        self.graph = graph_of(written(folder, text))
-        self.port = FakePort()
-        configuration = Configuration()
-        values = {each.name: each.default for each in layer_parameters(self.graph, configuration, str(log))}
-        loop = EventLoop(lambda: self.port.time)
-        self.layer = Layer(self.graph, Settings(values, configuration), self.port, loop)
-        self.layer.start()
-
-    def hear(self, topic: str, **fields: Any) -> None:
-        self.layer.receive(next(each for each in self.graph.subscriptions if each.topic == topic), Record(**fields))
-
-    def passes(self, name: str, message: Record) -> bool:
-        sending = next(each for _, _, each in sent_messages(self.graph) if each.name == name)
-        return self.layer.forwarded(sending, message) is not None
-
-    def reason(self) -> str:
-        reason: str = json.loads([text for name, text in self.port.told if name == "blocked"][-1])["reason"]
-        return reason
-
-
 def twist(x: float) -> Record:
     return Record(linear=Record(x=x))
 
 
 def test_layer(tmp_path: Path) -> None:
-    bench = Bench(tmp_path)
+    bench = LayerBench(written(tmp_path))
     assert bench.passes("velocity", twist(0.5))
     bench.hear("/seen", data=True)
     assert not bench.passes("velocity", twist(0.5))
-    assert bench.reason() == "requirement"
+    assert bench.blocked()["reason"] == "requirement"
     assert bench.passes("velocity", twist(0.3))
     assert [bench.passes("lamp", Record(data=level)) for level in range(4)] == [True, True, False, False]
 
 
 def test_not_finite(tmp_path: Path) -> None:
-    bench = Bench(tmp_path)
+    bench = LayerBench(written(tmp_path))
     for number in (math.nan, math.inf):
         assert not bench.passes("velocity", twist(number))
-        assert bench.reason() == "data"
+        assert bench.blocked()["reason"] == "data"
 
 
 # Files
@@ -525,9 +496,9 @@ def test_generated(tmp_path: Path) -> None:
 def test_reasons_of_a_layer(tmp_path: Path) -> None:
     """A component that is not ready is the reason, not a requirement that holds with this data."""
     text = changed("initial marked state ready {}", "initial marked state ready {} state open { on request to lamp }")
-    bench = Bench(tmp_path, text)
+    bench = LayerBench(written(tmp_path, text))
     assert not bench.passes("lamp", Record(data=0))
-    assert bench.reason() == "state"
+    assert bench.blocked()["reason"] == "state"
 
 
 @pytest.mark.parametrize("setting", ["onShutdown", "onWithheld", "onBlocked"])
@@ -545,10 +516,10 @@ def test_unsteady_stops(tmp_path: Path, setting: str) -> None:
 
 def test_out_of_range(tmp_path: Path) -> None:
     """A layer does not judge another number than it forwards."""
-    bench = Bench(tmp_path)
+    bench = LayerBench(written(tmp_path))
     for level in (-100, 70):
         assert not bench.passes("lamp", Record(data=level))
-        assert bench.reason() == "data"
+        assert bench.blocked()["reason"] == "data"
 
 
 def test_instead_of_forbidden_data(tmp_path: Path) -> None:
@@ -607,7 +578,7 @@ def test_disables_fields(tmp_path: Path) -> None:
         "requirement R2: value > 1 disables Base.lamp", "requirement R2: value.linear.y > 0.1 disables Base.velocity"
     )
     assert rules(text) == []
-    bench = Bench(tmp_path, text)
+    bench = LayerBench(written(tmp_path, text))
     assert bench.passes("velocity", Record(linear=Record(x=0.1, y=0.0)))
     assert not bench.passes("velocity", Record(linear=Record(x=0.1, y=0.5)))
     assert rules(changed("value > 1 disables Base.lamp", "value.foo > 1 disables Base.lamp")) != []
@@ -684,7 +655,7 @@ def test_functions_of_data() -> None:
 
 def test_log_of_a_layer(tmp_path: Path) -> None:
     """The log has the data that decide, so that a simulation of it decides alike."""
-    bench = Bench(tmp_path, SWITCH.replace("requirement never C.broken", ""), log=tmp_path / "log.jsonl")
+    bench = LayerBench(written(tmp_path, SWITCH.replace("requirement never C.broken", "")), log=tmp_path / "log.jsonl")
     assert bench.passes("go", Record(data=1))
     assert not bench.passes("go", Record(data=2))
     assert bench.passes("go", Record(data=0))

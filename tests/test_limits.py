@@ -18,7 +18,6 @@ from robosc.base.files.resources import locate
 from robosc.base.ros_types import RosTypes
 from robosc.language.completion import proposals
 from robosc.language.configuration import Configuration
-from robosc.language.configuration.parameters import layer_parameters
 from robosc.language.hover import describe
 from robosc.language.reading import read
 from robosc.language.semantic_tokens import classify
@@ -28,17 +27,13 @@ from robosc.m2t.models import Models
 from robosc.m2t.targets import TARGETS
 from robosc.model import validity
 from robosc.model.semantics.evaluation import single_precision
-from robosc.model.semantics.messages import find_message
 from robosc.run.node_tests import trace_player
 from robosc.run.node_tests.trace_test import trace_test_of
-from robosc.run.runtime.core.event_loop import EventLoop
-from robosc.run.runtime.core.layer import Layer
-from robosc.run.runtime.core.settings import SafeMessages, Settings
 from robosc.tools.cli import main
 from tests.language.second_edition import errors
 from tests.m2t.cpp.test_headers import run
 from tests.run.node_tests.in_process_node import InProcessNode
-from tests.run.runtime.fake import FakePort, Record, World
+from tests.run.runtime.fake import LayerBench, Record, World
 from tests.run.runtime.fake import supervised as graph_of
 
 if TYPE_CHECKING:
@@ -137,34 +132,6 @@ def sent(world: World, topic: str = "/velocity") -> Any:
     world.port.sent.clear()
     world.wait(0.15)
     return next((data for name, data in world.port.sent if name == topic), None)
-
-
-class Bench:
-    """A layer of the cart."""
-
-    def __init__(self, folder: Path, text: str = BASE, *on_blocked: str) -> None:
-        self.graph = graph_of(written(folder, text))
-        self.port = FakePort()
-        configuration = Configuration()
-        values = {each.name: each.default for each in layer_parameters(self.graph, configuration, "")}
-        instead = [sending for name in on_blocked if (sending := find_message(self.graph, name)) is not None]
-        settings = Settings(values, configuration)
-        loop = EventLoop(lambda: self.port.time)
-        self.layer = Layer(self.graph, settings, self.port, loop, SafeMessages(on_blocked=instead))
-        self.layer.start()
-
-    def hear(self, topic: str, **fields: Any) -> None:
-        self.layer.receive(next(each for each in self.graph.subscriptions if each.topic == topic), Record(**fields))
-
-    def forwarded(self, name: str, message: Record) -> Any:
-        sending = find_message(self.graph, name)
-        assert sending is not None
-        passed = self.layer.forwarded(sending, message)
-        return None if passed is None else passed.plain()
-
-    def blocked(self) -> dict[str, Any]:
-        report: dict[str, Any] = json.loads([text for name, text in self.port.told if name == "blocked"][-1])
-        return report
 
 
 def twist(x: float, z: float = 0.0) -> Record:
@@ -439,7 +406,7 @@ def test_unreadable(tmp_path: Path) -> None:
 
 
 def test_layer(tmp_path: Path) -> None:
-    bench = Bench(tmp_path)
+    bench = LayerBench(written(tmp_path))
     given = twist(2.0, 0.5)
     assert bench.forwarded("velocity", given) == {"linear": {"x": 2.0}, "angular": {"z": 0.5}, "unknown": 7.0}
     bench.hear("/seen", data=True)
@@ -450,7 +417,7 @@ def test_layer(tmp_path: Path) -> None:
 @pytest.mark.parametrize("number", [math.nan, math.inf])
 @pytest.mark.parametrize("near", [True, False])
 def test_layer_not_finite(tmp_path: Path, number: float, near: bool) -> None:
-    bench = Bench(tmp_path, BASE, "velocity")
+    bench = LayerBench(written(tmp_path), "velocity")
     bench.hear("/seen", data=near)
     assert bench.forwarded("velocity", twist(0.1)) is not None
     assert bench.forwarded("velocity", twist(number)) is None

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import robosc
 from robosc.language.configuration import Configuration
-from robosc.language.configuration.parameters import controller_parameters
+from robosc.language.configuration.parameters import controller_parameters, layer_parameters
+from robosc.model.semantics.messages import find_message
 from robosc.run.runtime.core.controller import Controller
 from robosc.run.runtime.core.event_loop import EventLoop
+from robosc.run.runtime.core.layer import Layer
 from robosc.run.runtime.core.node_data import BLANK
 from robosc.run.runtime.core.settings import SafeMessages, Settings
 
@@ -190,6 +193,39 @@ class World:
 
 
 _GRAPHS: dict[Path, rosgraph.RosGraph] = {}
+
+
+class LayerBench:
+    """A layer of a model; the messages named are sent instead of what it blocks."""
+
+    def __init__(self, model: Path, *on_blocked: str, log: Path | str = "") -> None:
+        self.graph = supervised(model)
+        self.port = FakePort()
+        configuration = Configuration()
+        values = {each.name: each.default for each in layer_parameters(self.graph, configuration, str(log))}
+        instead = [sending for name in on_blocked if (sending := find_message(self.graph, name)) is not None]
+        settings = Settings(values, configuration)
+        loop = EventLoop(lambda: self.port.time)
+        self.layer = Layer(self.graph, settings, self.port, loop, SafeMessages(on_blocked=instead))
+        self.layer.start()
+
+    def hear(self, topic: str, **fields: Any) -> None:
+        self.layer.receive(next(each for each in self.graph.subscriptions if each.topic == topic), Record(**fields))
+
+    def forwarded(self, name: str, message: Record) -> dict[str, Any] | None:
+        """Return the data that the layer forwards for a message of the controller, None if it blocks it."""
+        sending = find_message(self.graph, name)
+        assert sending is not None
+        passed = self.layer.forwarded(sending, message)
+        return None if passed is None else passed.plain()
+
+    def passes(self, name: str, message: Record) -> bool:
+        return self.forwarded(name, message) is not None
+
+    def blocked(self) -> dict[str, Any]:
+        """Return the last report of a blocked command."""
+        report: dict[str, Any] = json.loads([text for name, text in self.port.told if name == "blocked"][-1])
+        return report
 
 
 def supervised(model: Path) -> rosgraph.RosGraph:
