@@ -666,3 +666,26 @@ def test_log_of_a_layer(tmp_path: Path) -> None:
         ("blocked", {"value": 2}),
         ("out", {"value": 0}),
     ]
+
+
+#: Text of a robot whose node stores, for a limit, that a command happened.
+LIMITED_AFTERWARDS = """robot Cart {
+  component Base {
+    incoming message velocity with identifier: "/velocity", type: geometry_msgs/Twist
+    behaviour {
+      variable most: double = 0.2
+      initial marked state ready { on request to velocity do most := 0.1 }
+    }
+  }
+  requirement Base.velocity needs value.linear.y <= 0.3
+  limit Base.velocity with { linear: { x: Base.most } }
+}
+"""
+
+
+def test_forbidden_command_changes_no_data_of_the_layer(tmp_path: Path) -> None:
+    bench = LayerBench(written(tmp_path, LIMITED_AFTERWARDS))
+    forbidden, allowed = (Record(linear=Record(x=1.0, y=y)) for y in (0.5, 0.0))
+    assert bench.forwarded("velocity", forbidden) is None
+    assert bench.forwarded("velocity", allowed) == {"linear": {"x": 0.2, "y": 0.0}}
+    assert bench.forwarded("velocity", allowed) == {"linear": {"x": 0.1, "y": 0.0}}
