@@ -9,8 +9,8 @@ time and megabytes of memory. The output is one line per instance, then a table 
 `--monotone`, the default, does not try an instance if an instance of the same family with at most the same N and K is
 not done. It counts as not done, so the number of done instances is a lower bound. `--no-monotone` tries all.
 
-`--output FILE` adds each result to FILE as a line of JSON. Results in FILE are not measured again if they hold for the
-limits. Use a new file for another version of the program. `--page` writes `docs/dcs.md`, or FILE.
+`--output FILE` adds each result to FILE as a line of JSON. Instances with a result in FILE that is valid for the limits
+are not measured again. Use a new file for another version of the program. `--page` writes `docs/dcs.md`, or FILE.
 """
 
 from __future__ import annotations
@@ -46,22 +46,22 @@ CHAIN_SIZES = {
 
 def tasks(families: Iterable[str], n: int, k: int, *, aims: bool = False) -> list[Task]:
     """Return the instances to measure, in each family the smaller ones first."""
-    found: list[Task] = []
+    instances: list[Task] = []
     for family in families:
         sizes = CHAIN_SIZES.get(family) or [(i, j) for i in range(1, n + 1) for j in range(1, k + 1)]
-        found += [(family, *size) for size in sorted(sizes, key=lambda size: (sum(size), size))]
-    return [task for task in found if not aims or task in AIMS]
+        instances += [(family, *size) for size in sorted(sizes, key=lambda size: (sum(size), size))]
+    return [task for task in instances if not aims or task in AIMS]
 
 
-def hopeless(task: Task, results: Results) -> bool:
+def is_pruned(task: Task, results: Results) -> bool:
     """Return whether an instance that is smaller in both parameters is not done."""
     family, n, k = task
     return any(
-        found["ended"] != "done" and other == family and i <= n and j <= k for (other, i, j), found in results.items()
+        result["ended"] != "done" and other == family and i <= n and j <= k for (other, i, j), result in results.items()
     )
 
 
-def measured(task: Task, seconds: int, megabytes: int) -> Result:
+def run_instance(task: Task, seconds: int, megabytes: int) -> Result:
     """Return the result of an instance with its costs: all processor seconds of its process, and its most megabytes.
 
     `ended` is `done`, `time` or `memory`. Raises RuntimeError if the process fails for another reason.
@@ -85,14 +85,14 @@ def measured(task: Task, seconds: int, megabytes: int) -> Result:
     return result | costs | {"limits": [seconds, megabytes]}
 
 
-def holds(result: Result, seconds: int, megabytes: int) -> bool:
-    """Return whether a result, measured with any limits, holds for the given ones."""
+def is_valid(result: Result, seconds: int, megabytes: int) -> bool:
+    """Return whether a result is valid for other limits than those of its measurement."""
     if result["ended"] == "done":
         return bool(result["seconds"] <= seconds and result["memory"] <= megabytes)
     return bool(result["limits"][0] >= seconds and result["limits"][1] >= megabytes)
 
 
-def stored(path: Path | None) -> Results:
+def read_results(path: Path | None) -> Results:
     """Return the results in a file of JSON lines. An incomplete last line is removed from the file."""
     if path is None or not path.exists():
         return {}
@@ -122,8 +122,8 @@ def measure(todo: list[Task], results: Results, options: argparse.Namespace) -> 
         for task in todo:
             while len(running) >= options.jobs:
                 collect()
-            if task not in results and not (options.monotone and hopeless(task, results)):
-                running[pool.submit(measured, task, options.seconds, options.memory)] = task
+            if task not in results and not (options.monotone and is_pruned(task, results)):
+                running[pool.submit(run_instance, task, options.seconds, options.memory)] = task
         while running:
             collect()
 
@@ -131,15 +131,15 @@ def measure(todo: list[Task], results: Results, options: argparse.Namespace) -> 
 def main() -> int:
     options = _options()
     todo = tasks(options.families, options.n, options.k, aims=options.aims)
-    kept = {
+    results = {
         task: result
-        for task, result in stored(options.output).items()
-        if task in todo and holds(result, options.seconds, options.memory)
+        for task, result in read_results(options.output).items()
+        if task in todo and is_valid(result, options.seconds, options.memory)
     }
-    measure(todo, kept, options)
-    print(summary(todo, kept))
+    measure(todo, results, options)
+    print(summary(todo, results))
     if options.page is not None:
-        options.page.write_text(page(todo, kept, options.seconds, options.memory), encoding="utf-8")
+        options.page.write_text(page(todo, results, options.seconds, options.memory), encoding="utf-8")
     return 0
 
 

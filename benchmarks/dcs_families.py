@@ -19,6 +19,7 @@ without edges of one automaton, where their tool stops the whole composition.
 
 from __future__ import annotations
 
+import re
 import sys
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
@@ -129,7 +130,7 @@ def air_traffic(planes: int, heights: int) -> Instance:
             response.edge("Answered", f"descend_{p}_{h}", "Answered")
             response.edge(f"Owed_{p}", f"descend_{p}_{h}", "Answered")
     ramp.edge("Conflict", "ramp_crash", ERROR)
-    return _observed([*automata, ramp, response], ("descend_", "approach_"), ["control_all"])
+    return _observed([*automata, ramp, response], ("descend", "approach"), ["control_all"])
 
 
 def _height(height: int, planes: int) -> Automaton:
@@ -187,7 +188,7 @@ def bidding_workflow(teams: int, steps: int) -> Instance:
     document.edge(f"Accepted_{teams}", "refuse", ERROR)
     document.edge("Rejected", "approve", ERROR)
     document.edge("Rejected", "refuse", "Accepted_0")
-    return _observed([document, *automata], ("assign_", "approve", "refuse"), ["approve", "refuse"])
+    return _observed([document, *automata], ("assign", "approve", "refuse"), ["approve", "refuse"])
 
 
 def cat_and_mouse(animals: int, levels: int) -> Instance:
@@ -199,7 +200,7 @@ def cat_and_mouse(animals: int, levels: int) -> Instance:
     cells = 2 * levels + 1
     mice = [_animal("mouse", "cat", m, animals, cells) for m in range(animals)]
     cats = [_animal("cat", "mouse", c, animals, cells) for c in range(animals)]
-    return _observed([*mice, *cats], ("mouse_move_",), ["safe"])
+    return _observed([*mice, *cats], ("mouse_move",), ["safe"])
 
 
 def _animal(own: str, other: str, number: int, animals: int, cells: int) -> Automaton:
@@ -250,7 +251,7 @@ def dining_philosophers(philosophers: int, steps: int) -> Instance:
         monitor.edge("Eaten", f"eat_{p}", "Eaten")
         monitor.edge("Eaten", "eat_all", "Waiting")
         automata += [philosopher, fork, monitor]
-    return _observed(automata, ("take_",), ["eat_all"])
+    return _observed(automata, ("take",), ["eat_all"])
 
 
 def travel_agency(services: int, steps: int) -> Instance:
@@ -281,7 +282,7 @@ def travel_agency(services: int, steps: int) -> Instance:
         for event in (f"query_failed_{a}", f"uncommitted_{a}", f"purchase_failed_{a}"):
             excuse.edge("Excused", event, "Excused")
         automata += [_service(a, services, steps), _purchase(a)]
-    return _observed(automata, ("cancel_", "purchase_", "succeed", "fail"), ["succeed", "fail"])
+    return _observed(automata, ("cancel", "purchase", "succeed", "fail"), ["succeed", "fail"])
 
 
 def _service(a: int, services: int, steps: int) -> Automaton:
@@ -353,7 +354,7 @@ def transfer_line(machines: int, places: int) -> Instance:
     test.edge("Testing", "accept", "Idle")
     test.edge("Testing", "return_1", "Returned")
     test.edge("Returned", "reject", "Idle")
-    return _observed([*automata, test], ("get_",), ["accept", "reject"])
+    return _observed([*automata, test], ("get",), ["accept", "reject"])
 
 
 def cluster_tools(tools: int, _: int = 1) -> Instance:
@@ -388,7 +389,7 @@ def cluster_tools(tools: int, _: int = 1) -> Instance:
         for t in range(1, tools)
     ]
     automata = [part for pair in zip(robots, chambers, strict=True) for part in pair] + places + between
-    return Instance(tuple(automata), frozenset(_starting(automata, ("take_in_", "take_back_", "unload_", "start_"))))
+    return Instance(tuple(automata), _named(automata, ("take_in", "take_back", "unload", "start")))
 
 
 def _place(name: str, *passages: tuple[str, str]) -> Automaton:
@@ -425,7 +426,7 @@ def machine_line(machines: int, places: int | Sequence[int]) -> Instance:
     test.edge("Busy", "accept", "Idle")
     test.edge("Busy", "reject", "Idle")
     automata.append(test)
-    return Instance(tuple(automata), frozenset(_starting(automata, ("start_",))))
+    return Instance(tuple(automata), _named(automata, ("start",)))
 
 
 #: The benchmark of directed controller synthesis.
@@ -446,17 +447,18 @@ FAMILIES = DCS | CHAINS
 
 
 def _observed(automata: Sequence[Automaton], controllable: tuple[str, ...], marked: Sequence[str]) -> Instance:
-    """Return an instance with the observer of its marked events; controllable events begin with given words."""
+    """Return an instance with the observer of its marked events, and the names of its controllable events."""
     goal = Automaton(GOAL, "Other", frozenset({"Reached"}))
     for event in dict.fromkeys(event for automaton in automata for event in _events(automaton)):
         for location in ("Other", "Reached"):
             goal.edge(location, event, "Reached" if event in marked else "Other")
-    return Instance((*automata, goal), frozenset(_starting(automata, controllable)))
+    return Instance((*automata, goal), _named(automata, controllable))
 
 
-def _starting(automata: Sequence[Automaton], words: tuple[str, ...]) -> set[str]:
-    """Return the events that begin with one of some words."""
-    return {event for automaton in automata for event in automaton.alphabet if event.startswith(words)}
+def _named(automata: Sequence[Automaton], names: tuple[str, ...]) -> frozenset[str]:
+    """Return the events with one of some names, whatever numbers follow the name."""
+    events = (event for automaton in automata for event in automaton.alphabet)
+    return frozenset(event for event in events if re.sub(r"(_\d+)+$", "", event) in names)
 
 
 def _events(automaton: Automaton) -> list[str]:

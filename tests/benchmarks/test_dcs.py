@@ -26,6 +26,16 @@ SMALL = [
     *[("LINE", 1, 1), ("LINE", 2, 2), ("LINE", 3, 1)],
 ]
 
+#: States under the supervisor that an explicit search finds in the published files of MTSA, a tool of its authors.
+PUBLISHED = [
+    *[("AT", 2, 2, 31), ("AT", 3, 3, 219), ("AT", 3, 2, 0)],
+    *[("BW", 2, 3, 65), ("BW", 3, 3, 513)],
+    *[("CM", 1, 3, 107), ("CM", 2, 3, 1625)],
+    *[("DP", 1, 1, 0), ("DP", 3, 3, 2259)],
+    *[("TA", 2, 3, 126), ("TA", 3, 2, 696), ("TA", 3, 3, 804)],
+    *[("TL", 2, 3, 295), ("TL", 3, 3, 3355)],
+]
+
 State = tuple[str, ...]
 
 
@@ -105,6 +115,11 @@ def test_states_are_those_of_an_explicit_search(counted, family, n, k):
     assert counted(instance) == len(supervised(instance))
 
 
+@pytest.mark.parametrize(("family", "n", "k", "states"), PUBLISHED)
+def test_states_are_those_of_the_published_files(counted, family, n, k, states):
+    assert counted(DCS[family].instance(n, k)) == states
+
+
 @pytest.mark.parametrize(("teams", "evaluations"), [(1, 1), (2, 3), (3, 3), (5, 4)])
 def test_bidding_has_as_many_states_as_its_formula(counted, teams, evaluations):
     # A team waits, has accepted, or reads or has rejected one of its evaluations. They determine the document. Only
@@ -114,8 +129,8 @@ def test_bidding_has_as_many_states_as_its_formula(counted, teams, evaluations):
 
 def test_line_has_as_many_states_and_transitions_as_wonham_publishes(counted):
     line = machine_line(2, (3, 1))
-    found = supervised(line)
-    assert (len(found), sum(map(len, found.values()))) == (28, 65)
+    transitions = supervised(line)
+    assert (len(transitions), sum(map(len, transitions.values()))) == (28, 65)
     assert counted(line) == 28
 
 
@@ -147,10 +162,10 @@ def test_two_targets_of_an_event_are_an_error():
 
 
 def test_instances_are_measured_in_their_own_processes():
-    found = dcs.measured(("BW", 2, 1), 60, 4096)
-    assert (found["ended"], found["states"], found["limits"]) == ("done", 17, [60, 4096])
-    assert dcs.measured(("BW", 2, 1), 60, 1)["ended"] == "memory"
-    assert dcs.measured(("CM", 15, 15), 1, 4096)["ended"] == "time"
+    result = dcs.run_instance(("BW", 2, 1), 60, 4096)
+    assert (result["ended"], result["states"], result["limits"]) == ("done", 17, [60, 4096])
+    assert dcs.run_instance(("BW", 2, 1), 60, 1)["ended"] == "memory"
+    assert dcs.run_instance(("CM", 15, 15), 1, 4096)["ended"] == "time"
 
 
 @pytest.fixture
@@ -159,11 +174,11 @@ def options(tmp_path):
 
 
 @pytest.fixture
-def tried(monkeypatch):
+def attempts(monkeypatch):
     """Return the instances that are measured. Only those with N + K < 5 are done."""
     instances = []
 
-    def measured(task, seconds, megabytes):
+    def run(task, seconds, megabytes):
         instances.append(task)
         result = {"ended": "done", "states": 7, "operations": 8, "nodes": 9, "synthesis": 1.5}
         return (result if sum(task[1:]) < 5 else {"ended": "time"}) | {
@@ -172,45 +187,45 @@ def tried(monkeypatch):
             "limits": [seconds, megabytes],
         }
 
-    monkeypatch.setattr(dcs, "measured", measured)
+    monkeypatch.setattr(dcs, "run_instance", run)
     return instances
 
 
-def test_instances_above_one_that_is_not_done_are_not_tried(options, tried):
+def test_instances_above_one_that_is_not_done_are_not_tried(options, attempts):
     todo = dcs.tasks(["AT", "TL"], 4, 4)
     results = {}
     dcs.measure(todo, results, options)
     done = {task for task in todo if sum(task[1:]) < 5}
-    assert {task for task in tried if task in done} == done
-    assert {task for task in todo if sum(task[1:]) == 5} <= set(tried)
-    assert ("AT", 4, 4) not in tried
-    assert len(tried) == len(set(tried)) == len(results)
+    assert {task for task in attempts if task in done} == done
+    assert {task for task in todo if sum(task[1:]) == 5} <= set(attempts)
+    assert ("AT", 4, 4) not in attempts
+    assert len(attempts) == len(set(attempts)) == len(results)
     assert "RoboSC completes 12 of 32 instances with N up to 4 and K up to 4." in summary(todo, results)
     options.monotone = False
     dcs.measure(todo, results, options)
-    assert sorted(tried) == sorted(todo)
+    assert sorted(attempts) == sorted(todo)
 
 
-def test_stored_results_are_not_measured_again(options, tried):
+def test_stored_results_are_not_measured_again(options, attempts):
     todo = dcs.tasks(["DP"], 3, 3)
     results = {}
     dcs.measure(todo, results, options)
     with options.output.open("a") as file:
         file.write('{"family": "DP", "n": 3, "k"')
-    stored = dcs.stored(options.output)
+    stored = dcs.read_results(options.output)
     assert stored == results
     assert [json.loads(line)["family"] for line in options.output.read_text().splitlines()] == ["DP"] * len(results)
-    before = len(tried)
+    before = len(attempts)
     dcs.measure(todo, stored, options)
-    assert len(tried) == before
+    assert len(attempts) == before
     done, undone = stored["DP", 1, 1], stored["DP", 3, 2]
-    assert dcs.holds(done, 10, 4096)
-    assert not dcs.holds(done, 1, 4096)
-    assert dcs.holds(undone, 10, 4096)
-    assert not dcs.holds(undone, 61, 4096)
+    assert dcs.is_valid(done, 10, 4096)
+    assert not dcs.is_valid(done, 1, 4096)
+    assert dcs.is_valid(undone, 10, 4096)
+    assert not dcs.is_valid(undone, 61, 4096)
 
 
-@pytest.mark.usefixtures("tried")
+@pytest.mark.usefixtures("attempts")
 def test_the_page_has_each_family_and_each_named_instance(options):
     todo = dcs.tasks(FAMILIES, 15, 15, aims=True) + dcs.tasks(["AT"], 3, 3)
     results = {}
