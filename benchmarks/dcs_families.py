@@ -4,17 +4,17 @@
 
 prints one instance as CIF.
 
-Six families come from the benchmark of directed controller synthesis: D. Ciolek, V. Braberman, N. D'Ippolito,
-N. Piterman and S. Uchitel, "Compositional supervisory control via reactive synthesis and automated planning" (IEEE
-Transactions on Automatic Control 65, 2020), and D. Ciolek, M. Duran, F. Zanollo, N. Pazos, J. Braier, V. Braberman,
-N. D'Ippolito and S. Uchitel, "On-the-fly informed search of non-blocking directed controllers" (Automatica 147, 2023).
-These papers vary N and K from 1 to 15. A controller must avoid the errors and must be able to reach a marked *event*
-again and again. States are marked here, so each instance has an observer `Goal`. It hears every event, and its marked
-location holds after a marked event only. All other locations are marked.
+Six families come from the benchmark of directed controller synthesis: D. Ciolek and others, "Compositional supervisory
+control via reactive synthesis and automated planning" (IEEE Transactions on Automatic Control, 2020), and D. Ciolek,
+M. Duran, F. Zanollo, N. Pazos, J. Braier, V. Braberman, N. D'Ippolito and S. Uchitel, "On-the-fly informed search of
+non-blocking directed controllers" (Automatica 147, 2023, doi 10.1016/j.automatica.2022.110731). The papers vary N and K
+from 1 to 15. The controller must avoid the errors. A marked *event* must remain possible again and again. States are
+marked here, so each instance has an observer `Goal`. It takes part in every event, and only its location after a marked
+event is marked. In all other automata, each location is marked.
 
-The families differ from the papers' models in two points, which change no count of controlled states. An event that
-can never happen is left out, for example the return of a piece to any buffer but the first. An error is a location
-without edges of one automaton, where their tool stops the whole composition.
+The families differ from the authors' models in two points, neither of which changes a count of controlled states.
+Events that can never happen are left out, for example the return of a piece to any buffer but the first. An error is a
+location without edges of one automaton; in the authors' tool MTSA, an error stops the whole composition.
 """
 
 from __future__ import annotations
@@ -96,7 +96,7 @@ class Family:
 
 
 def air_traffic(planes: int, heights: int) -> Instance:
-    """Return planes that ask to land, hold at heights above the ground, and share a ramp.
+    """Return planes that request to land, hold at heights above the ground, and share a ramp.
 
     Controllable: `descend` to a height and `approach` the ramp. Two planes in one height or on the ramp may crash at
     any time. Each request is answered by a descent before anything but a landing happens. Marked: `control_all`, when
@@ -259,8 +259,8 @@ def travel_agency(services: int, steps: int) -> Instance:
 
     Controllable: `cancel`, `purchase`, `succeed` and `fail`. Errors: success without all purchases, or failure without
     an excuse: a query that failed, two uncommitted services, or one whose purchase failed. Marked: both results.
-    The published files have two versions of a selection with no steps left. Here it goes on to the booking at once, as
-    in the files with the marking `agency.succ, agency.fail`.
+    The authors' files have two versions of a selection. Here the booking follows its last step at once, as in the files
+    of the non-blocking benchmark. The other version has one more selection.
     """
     agency = Automaton("Agency", "Idle")
     agency.edge("Idle", "ask", "Working")
