@@ -117,12 +117,12 @@ def page(todo: Sequence[Task], results: Results, seconds: int, memory: int) -> s
 
 
 def _total(todo: Sequence[Task], results: Results) -> list[str]:
-    """Return the number of done instances of the benchmark, as sentences."""
+    """Return the number of done instances of the benchmark as a sentence, if all sizes up to a largest are measured."""
     ours = [task for task in todo if task[0] in DCS]
-    if not ours:
+    n, k = (max((task[index] for task in ours), default=0) for index in (1, 2))
+    if not ours or len(ours) != n * k * len({task[0] for task in ours}):
         return []
     done = sum(_done(task, results) for task in ours)
-    n, k = (max(task[index] for task in ours) for index in (1, 2))
     return [f"RoboSC completes {done:,} of {len(ours):,} instances with N up to {n} and K up to {k}."]
 
 
