@@ -46,16 +46,16 @@ class BlockReason:
 
 def reason_of_emptiness(system: SynthesizedSystem) -> BlockReason:
     """Return why the initial state of a system without controlled states is not controlled."""
-    blocked = not (system.encoding.initial & system.solution.alive[0]).satisfiable()
+    blocked = not (system.encoding.initial & system.solution.rounds.alive[0]).satisfiable()
     return _blocked_from_the_start(system) if blocked else _uncontrollable(system)
 
 
 def _uncontrollable(system: SynthesizedSystem) -> BlockReason:
     encoding, solution = system.encoding, system.solution
     # Initial states that reach no marked state at all do not show which event is uncontrollable.
-    start = pick(encoding.initial & solution.alive[0], encoding.layout.state)
+    start = pick(encoding.initial & solution.rounds.alive[0], encoding.layout.state)
     before = encoding.state(unavoidable(system, start).states[-2])
-    blocked = solution.rounds[0] & ~solution.alive[0]
+    blocked = solution.reached & ~solution.rounds.alive[0]
     first = _path(system, system.moves, encoding.initial, before)
     last = _path(system, _uncontrollable_moves(system), before, blocked)
     event = last.moves[0][0].event
@@ -180,7 +180,7 @@ def unavoidable(system: SynthesizedSystem, start: Codes) -> Path:
     uncontrollable. The path is empty if the start itself does not reach a goal.
     """
     uncontrollable = _uncontrollable_moves(system)
-    rounds, alive = system.solution.rounds, system.solution.alive
+    rounds, alive = system.solution.rounds.good, system.solution.rounds.alive
     index = max(number for number, good in enumerate(rounds) if system.is_in(start, good))
     whole = Path([dict(start)], [])
 

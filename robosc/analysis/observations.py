@@ -235,7 +235,7 @@ class Observer:
         Yields nothing if the count exceeds its effort limit.
         """
         groups = self._system.group_requirements()
-        if len(groups) * self._system.solution.rounds[0].node_count() > _WEIGHING:
+        if len(groups) * self._system.solution.reached.node_count() > _WEIGHING:
             return
         for requirements in groups:
             states = self._system.diagrams.any_of(map(self._matters, requirements))
@@ -246,7 +246,7 @@ class Observer:
 
     def _matters(self, requirement: sct.StatedRequirement) -> Diagram:
         if requirement in self._system.violations:
-            return self._system.solution.rounds[0] & self._system.violations[requirement]
+            return self._system.solution.reached & self._system.violations[requirement]
         if isinstance(requirement, sct.ReachabilityRequirement):
             return self._system.stranded(requirement)
         assert isinstance(requirement, sct.Requirement)

@@ -18,7 +18,7 @@ from robosc.model.places import place
 from robosc.model.semantics.edges import edges_from
 from robosc.model.semantics.naming import escape_keyword
 from robosc.model.semantics.roles import plant_of
-from robosc.synthesis import MEMORY, Phase, Solution, Statistics, Synthesis, solve
+from robosc.synthesis import MEMORY, Phase, Solution, Statistics, Synthesis, Tuning, solve
 
 if TYPE_CHECKING:
     from robosc.base.diagnostics import Span
@@ -118,12 +118,12 @@ def diagnose(
     memory: int = MEMORY,
     statistics: Statistics | None = None,
     weigh: bool = False,
-    effort: int | None = None,
+    tuning: Tuning | None = None,
 ) -> Diagnosis:
     """Synthesize the supervisor of a model and observe it, without changing the model.
 
-    `weigh` requests the weights. For `memory`, `statistics` and errors see `robosc.synthesis.synthesize`; for `effort`
-    see `solve`.
+    `weigh` requests the weights. For `memory`, `statistics`, `tuning` and errors see
+    `robosc.synthesis.synthesize`.
     """
 
     def look(solution: Solution) -> Diagnosis:
@@ -138,7 +138,7 @@ def diagnose(
             weights = tuple(observer.weights()) if weigh else ()
             return Diagnosis(**attributes, observations=observer.observations(), weights=weights)
 
-    return solve(model, look, memory=memory, statistics=statistics, effort=effort)
+    return solve(model, look, memory=memory, statistics=statistics, tuning=tuning)
 
 
 def supervise(
@@ -147,16 +147,16 @@ def supervise(
     memory: int = MEMORY,
     statistics: Statistics | None = None,
     weigh: bool = False,
-    effort: int | None = None,
+    tuning: Tuning | None = None,
 ) -> Supervision:
     """Synthesize the supervisor of a model and assign it to the model.
 
     The model gets the supervisor only if all guards are complete and no finding is an error. Guards explain why
-    synthesis added a condition, if the explanation is cheap. For `memory` and `statistics` see
-    `robosc.synthesis.synthesize`; for `weigh` and `effort` see `diagnose`. Raises EmptySupervisorError if there is no
+    synthesis added a condition, if the explanation is cheap. For `memory`, `statistics` and
+    `tuning` see `robosc.synthesis.synthesize`; for `weigh` see `diagnose`. Raises EmptySupervisorError if there is no
     supervisor, and ModelError and MemoryError as `synthesize` does.
     """
-    synthesis = diagnose(model, memory=memory, statistics=statistics, weigh=weigh, effort=effort)
+    synthesis = diagnose(model, memory=memory, statistics=statistics, weigh=weigh, tuning=tuning)
     if synthesis.observations is None:
         raise EmptySupervisorError(model, synthesis)
     findings = findings_of(model, synthesis.observations)

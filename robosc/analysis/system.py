@@ -21,7 +21,7 @@ from robosc.model.semantics.definition import named_state
 from robosc.model.semantics.roles import Roles, plant_of
 from robosc.synthesis.bdd import and_exists
 from robosc.synthesis.decoding import value
-from robosc.synthesis.fixpoint import coreachable, reachable, supervise
+from robosc.synthesis.fixpoint import Search, completed, coreachable, reachable, supervise_forwards
 from robosc.synthesis.relation import event_relations, goals, plant_moves, required_moves, steps, violations
 from robosc.synthesis.run_to_completion import Completion, completion, internal_events
 
@@ -179,7 +179,7 @@ class SynthesizedSystem(SupervisedSystem):
         )
         #: For each event, the states, and the inputs of a command, in which its requirements hold.
         self.required = {relation.event: relation.permitted for relation in relations}
-        self.solution = solution or supervise(encoding, self.moves, self.violating, self.goals.values())
+        self.solution = solution or self._supervised()
         self.controlled = self.solution.controlled
 
     def without(self, requirements: AbstractSet[sct.StatedRequirement]) -> SynthesizedSystem:
@@ -203,9 +203,15 @@ class SynthesizedSystem(SupervisedSystem):
             requirement: states for requirement, states in self.violations.items() if requirement not in requirements
         }
         other.goals = {required: goal for required, goal in self.goals.items() if required not in requirements}
-        other.solution = supervise(self.encoding, other.moves, other.violating, other.goals.values())
+        other.solution = other._supervised()  # noqa: SLF001  # of the same class
         other.controlled = other.solution.controlled
         return other
+
+    def _supervised(self) -> SupervisedStates:
+        search = Search(
+            self.encoding, list(self.relations.values()), self.moves, self.violating, list(self.goals.values())
+        )
+        return completed(supervise_forwards(search))
 
     def violated(self, codes: Codes) -> tuple[sct.StatedRequirement, ...]:
         """Return the requirements that a state violates, else those whose states it cannot reach.
@@ -215,7 +221,7 @@ class SynthesizedSystem(SupervisedSystem):
         violated = super().violated(codes) or self._unreachable_goals(codes)
         if violated or not self.goals:
             return violated
-        encoding, allowed = self.encoding, self.solution.rounds[0] & ~self.violating
+        encoding, allowed = self.encoding, self.solution.reached & ~self.violating
         way = shortest_path(encoding, self.moves, encoding.state(codes), encoding.all_marked & allowed, allowed)
         unreachable = map(self._unreachable_goals, () if way is None else way.states)
         return next(filter(None, unreachable), ())
@@ -226,7 +232,7 @@ class SynthesizedSystem(SupervisedSystem):
         due = {required: goal.states for required, goal in self.goals.items() if self.is_in(codes, goal.premise)}
         if not due:
             return ()
-        onwards = reachable(self.diagrams, steps(self.moves), here, self.solution.alive[0] | here)
+        onwards = reachable(self.diagrams, steps(self.moves), here, self.solution.rounds.alive[0] | here)
         return tuple(required for required, states in due.items() if not (onwards & states).satisfiable())
 
     def stranded(self, required: sct.ReachabilityRequirement) -> Diagram:
@@ -234,7 +240,7 @@ class SynthesizedSystem(SupervisedSystem):
 
         They are reachable under the requirements that restrict events.
         """
-        goal, reached = self.goals[required], self.solution.rounds[0]
+        goal, reached = self.goals[required], self.solution.reached
         return reached & goal.premise & ~coreachable(self.diagrams, steps(self.moves), goal.states & reached, reached)
 
     def permitted(self, event: sct.Event) -> Diagram:

@@ -8,11 +8,11 @@
 `robosc.analysis` explains why a supervisor is empty and reports what is suspicious about one.
 
 The modules, from the lowest up: `bdd` wraps the library of decision diagrams; `order` computes the variable order;
-`arithmetic` computes with vectors of diagrams; `encoding` maps elements and expressions to diagrams, and `decoding` and
-`cover` map them back; `relation` holds the transition relation of each event; `fixpoint` closes sets of states, in
-single steps or by `acceleration`; `guards` writes the result of the fixpoint as expressions, using `projection` to
-restrict state sets to few elements and `simplification` to shorten requirements; `run_to_completion` bounds sequences
-of internal events.
+`arithmetic` computes with vectors of diagrams; `encoding` maps elements and expressions to diagrams, and `decoding`,
+`factored` and `cover` map them back; `relation` holds the transition relation of each event; `fixpoint` closes sets of
+states, in single steps or by `acceleration`; `race` chooses the strategy of the fixpoint; `guards` writes its result as
+expressions, using `projection` to restrict state sets to few elements and `simplification` to shorten requirements;
+`run_to_completion` bounds sequences of internal events.
 """
 
 from __future__ import annotations
@@ -26,10 +26,11 @@ from robosc.model.places import place
 from robosc.model.semantics.roles import event_name, is_from_cif
 from robosc.synthesis.bdd import Diagrams, with_enough_memory
 from robosc.synthesis.cover import separating_expression
-from robosc.synthesis.encoding import BitLayout, Encoding
-from robosc.synthesis.fixpoint import SupervisedStates, reachable, supervise, supervise_only
+from robosc.synthesis.encoding import BitLayout, Encoding, Order
+from robosc.synthesis.fixpoint import Search, SupervisedStates, reachable
 from robosc.synthesis.guards import Permission, permission
 from robosc.synthesis.projection import Projection
+from robosc.synthesis.race import Race, Strategy
 from robosc.synthesis.relation import (
     EventRelation,
     event_relations,
@@ -43,13 +44,11 @@ from robosc.synthesis.run_to_completion import completion, internal_events
 from robosc.synthesis.statistics import Phase, Statistics
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from robosc.synthesis.bdd import Diagram
-    from robosc.synthesis.relation import Goal, Move
 
     T = TypeVar("T")
-    _Supervising = Callable[[Encoding, Sequence[Move], Diagram, Iterable[Goal]], SupervisedStates]
 
 __all__ = [
     "MEMORY",
@@ -57,7 +56,9 @@ __all__ = [
     "Phase",
     "Solution",
     "Statistics",
+    "Strategy",
     "Synthesis",
+    "Tuning",
     "count",
     "solve",
     "synthesize",
@@ -89,7 +90,7 @@ class Synthesis:
     statistics: Statistics
     #: Events that can happen under the supervisor, in the order of the plants.
     possible: tuple[sct.Event, ...] = ()
-    #: Events whose synthesized condition is missing from the supervisor because it exceeds the effort limit. Each event
+    #: Events whose synthesized condition is missing from the supervisor because it is too long. Each event
     #: comes with the number of nodes of the diagram of that condition.
     unwritten: Mapping[sct.Event, int] = field(default_factory=dict)
 
@@ -97,6 +98,21 @@ class Synthesis:
     def seconds(self) -> float:
         """Total wall-clock time in seconds."""
         return sum(self.statistics.seconds.values())
+
+
+@dataclass(frozen=True)
+class Tuning:
+    """Choices that change the cost of synthesis. They never change the supervisor.
+
+    `order` is "automatic", "text" for the order of the model's text, or a sequence of names of elements from the top of
+    the diagrams down, as `robosc.synthesis.encoding.element_name` returns them. The other elements follow in the
+    automatic order. Without a `strategy`, synthesis chooses one. `longest` is the maximum number of conditions that
+    synthesis adds to one event. A guard that needs more is written without them, and `unwritten` lists its event.
+    """
+
+    order: Order = "automatic"
+    strategy: Strategy | None = None
+    longest: int | None = None
 
 
 @dataclass(frozen=True)
@@ -110,12 +126,15 @@ class Counts:
 
 @dataclass(frozen=True)
 class _Solution:
-    """Result of the fixpoint with its encoding; `uncontrolled` is None if these states are not counted."""
+    """Result of the fixpoint.
 
-    encoding: Encoding
-    relations: Sequence[EventRelation]
+    `uncontrolled_states` is None if these states are not counted. `uncontrolled` holds them if they have the encoding
+    of the result.
+    """
+
     states: SupervisedStates
     uncontrolled: Diagram | None
+    uncontrolled_states: int | None
 
 
 @dataclass(frozen=True)
@@ -124,7 +143,7 @@ class Solution:
 
     `relations` are those of all events, in the order of the plants. `permissions` are those of the controllable events;
     it is empty if the supervisor is empty. `states` is the result of the fixpoint. `uncontrolled` holds the states that
-    the plants reach without requirements; it is None if these are not counted.
+    the plants reach without requirements; it is None if these are not counted, or not in this encoding.
     """
 
     synthesis: Synthesis
@@ -136,7 +155,11 @@ class Solution:
 
 
 def synthesize(
-    model: sct.SupervisoryControlModel, *, memory: int = MEMORY, statistics: Statistics | None = None
+    model: sct.SupervisoryControlModel,
+    *,
+    memory: int = MEMORY,
+    statistics: Statistics | None = None,
+    tuning: Tuning | None = None,
 ) -> Synthesis:
     """Synthesize the maximally permissive, controllable, non-blocking supervisor of a valid model.
 
@@ -145,14 +168,20 @@ def synthesize(
     values of a controllable event. A marked state, and a state that a requirement wants to be reachable, is reachable
     for some values. `memory` is the limit of the decision diagrams
     in bytes. The diagrams grow as needed; beyond the limit, MemoryError is raised. Pass new `statistics` to follow the
-    progress from another thread.
+    progress from another thread. `tuning` changes the cost, but never the supervisor.
 
     Raises a located ModelError if synthesis does not support the model: doubles and strings.
     """
-    return solve(model, lambda solution: solution.synthesis, memory=memory, statistics=statistics)
+    return solve(model, lambda solution: solution.synthesis, memory=memory, statistics=statistics, tuning=tuning)
 
 
-def count(model: sct.SupervisoryControlModel, *, memory: int = MEMORY, statistics: Statistics | None = None) -> Counts:
+def count(
+    model: sct.SupervisoryControlModel,
+    *,
+    memory: int = MEMORY,
+    statistics: Statistics | None = None,
+    tuning: Tuning | None = None,
+) -> Counts:
     """Count the states under the supervisor of a model, without writing its guards.
 
     The count is 0 if the supervisor is empty. Use it for models whose guards take longer than the rest of synthesis.
@@ -160,11 +189,11 @@ def count(model: sct.SupervisoryControlModel, *, memory: int = MEMORY, statistic
     """
 
     def counted(solution: _Solution) -> Counts:
-        encoding, controlled = solution.encoding, solution.states.controlled
+        encoding, controlled = solution.states.search.encoding, solution.states.controlled
         states = encoding.count(controlled) if controlled.satisfiable() else 0
-        return Counts(_uncontrolled_states(solution), states, controlled.node_count())
+        return Counts(solution.uncontrolled_states, states, controlled.node_count())
 
-    return _with_states(model, counted, memory, statistics or Statistics(), supervise_only)
+    return _with_states(model, counted, memory, statistics or Statistics(), tuning or Tuning())
 
 
 def solve(
@@ -173,18 +202,16 @@ def solve(
     *,
     memory: int = MEMORY,
     statistics: Statistics | None = None,
-    effort: int | None = None,
+    tuning: Tuning | None = None,
 ) -> T:
     """Synthesize and return `look(solution)`.
 
     If the decision diagrams outgrow their limit, synthesis and `look` run again with a larger one. `look` must
-    therefore have no lasting side effects. `effort` is the maximum number of nodes visited for one guard. A guard that
-    takes more is written without the condition that synthesis added, and `unwritten` lists its event. For the other
-    arguments and the errors see `synthesize`.
+    therefore have no lasting side effects. For the other arguments and the errors see `synthesize`.
     """
-    statistics = statistics or Statistics()
+    statistics, tuning = statistics or Statistics(), tuning or Tuning()
     return _with_states(
-        model, lambda all_states: look(_solved(all_states, statistics, effort)), memory, statistics, supervise
+        model, lambda all_states: look(_solved(all_states, statistics, tuning.longest)), memory, statistics, tuning
     )
 
 
@@ -227,47 +254,55 @@ def _with_states(
     use: Callable[[_Solution], T],
     memory: int,
     statistics: Statistics,
-    supervising: _Supervising,
+    tuning: Tuning,
 ) -> T:
     """Compute the supervised states of a model and return the result of `use`."""
     with statistics.during(Phase.ORDER):
-        layout = BitLayout(model)
+        layout = BitLayout(model, tuning.order)
+    race = Race(tuning.strategy)
     return with_enough_memory(
-        lambda capacity: use(_solve(model, layout, capacity, statistics, supervising)), memory, layout.levels
+        lambda capacity: use(_solve(model, layout, capacity, statistics, race)), memory, layout.levels
     )
 
 
+def _search(model: sct.SupervisoryControlModel, layout: BitLayout, capacity: int, statistics: Statistics) -> Search:
+    """Return the problem of the fixpoint, with room for `capacity` nodes."""
+    encoding = Encoding(layout, Diagrams(layout.levels, capacity, statistics))
+    relations = event_relations(model, encoding)
+    _refuse_overlapping(relations)
+    violating = encoding.diagrams.any_of(violations(model, relations, encoding).values())
+    states_to_reach = list(goals(model, encoding).values())
+    return Search(encoding, relations, required_moves(relations), violating, states_to_reach)
+
+
 def _solve(
-    model: sct.SupervisoryControlModel,
-    layout: BitLayout,
-    capacity: int,
-    statistics: Statistics,
-    supervising: _Supervising,
+    model: sct.SupervisoryControlModel, layout: BitLayout, capacity: int, statistics: Statistics, race: Race
 ) -> _Solution:
     """Compute the supervised states, with room for `capacity` nodes."""
     statistics.begin_again()
     with statistics.during(Phase.ENCODE):
-        diagrams = Diagrams(layout.levels, capacity, statistics)
-        encoding = Encoding(layout, diagrams)
-        relations = event_relations(model, encoding)
-        _refuse_overlapping(relations)
-        moves = required_moves(relations)
+        search = _search(model, layout, capacity, statistics)
     with statistics.during(Phase.FIXPOINT):
-        uncontrolled = None
+        uncontrolled = uncontrolled_states = None
         if not is_from_cif(model):
-            uncontrolled = reachable(diagrams, steps(plant_moves(relations)), encoding.initial, diagrams.true)
-        violating = diagrams.any_of(violations(model, relations, encoding).values())
-        states = supervising(encoding, moves, violating, goals(model, encoding).values())
-        return _Solution(encoding, relations, states, uncontrolled)
+            encoding = search.encoding
+            uncontrolled = reachable(
+                encoding.diagrams, steps(plant_moves(search.relations)), encoding.initial, encoding.diagrams.true
+            )
+            uncontrolled_states = encoding.count_plants(uncontrolled)
+        rival_statistics = Statistics(operations=statistics.operations)
+        states = race.supervise(search, lambda: _search(model, layout, capacity, rival_statistics))
+    statistics.strategy = race.strategy
+    if states.search is search:
+        return _Solution(states, uncontrolled, uncontrolled_states)
+    statistics.replace_costs(rival_statistics)
+    return _Solution(states, None, uncontrolled_states)
 
 
-def _uncontrolled_states(solution: _Solution) -> int | None:
-    return None if solution.uncontrolled is None else solution.encoding.count_plants(solution.uncontrolled)
-
-
-def _solved(all_found: _Solution, statistics: Statistics, effort: int | None) -> Solution:
-    encoding, relations, fixpoint = all_found.encoding, all_found.relations, all_found.states
-    uncontrolled, all_states = all_found.uncontrolled, _uncontrolled_states(all_found)
+def _solved(all_found: _Solution, statistics: Statistics, longest: int | None) -> Solution:
+    fixpoint = all_found.states
+    encoding, relations = fixpoint.search.encoding, fixpoint.search.relations
+    uncontrolled, all_states = all_found.uncontrolled, all_found.uncontrolled_states
     diagrams, nodes = encoding.diagrams, fixpoint.controlled.node_count()
     if not fixpoint.controlled.satisfiable():
         empty = Synthesis(None, all_states, 0, nodes, statistics)
@@ -275,7 +310,7 @@ def _solved(all_found: _Solution, statistics: Statistics, effort: int | None) ->
     with statistics.during(Phase.GUARDS):
         controlled = Projection(fixpoint.controlled, encoding)
         permissions = [
-            permission(relation, controlled, encoding, restricts=len(fixpoint.rounds) > 1, effort=effort)
+            permission(relation, controlled, encoding, restricts=fixpoint.restricted, longest=longest)
             for relation in relations
             if relation.event.controllable
         ]

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
     T = TypeVar("T")
 
+#: Error of an operation that runs out of room for nodes.
+OutOfRoomError = DDMemoryError
 #: Boolean function over the variables of its `Diagrams`. Equal functions compare equal and have the same hash. It
 #: offers `& | ^ ~`, `equiv`, `imp`, `ite`, `exists(cube)`, `satisfiable`, `valid`, `sat_count`, `node_count`.
 Diagram: TypeAlias = BCDDFunction

@@ -2,11 +2,13 @@
 
 A cover is a sum of products over finite domains. Each product restricts some elements to sets of values. Products grow
 from single states until they meet the other set, as in espresso (Rudell, Sangiovanni-Vincentelli: Multiple-valued
-minimization for PLA optimization, TCAD 1987), but over decision diagrams.
+minimization for PLA optimization, TCAD 1987), but over decision diagrams. Expressions that would be too long to read
+are nested instead (`factored`).
 """
 
 from __future__ import annotations
 
+from math import inf
 from typing import TYPE_CHECKING, TypeAlias
 
 from robosc.model import expression as ex
@@ -14,6 +16,7 @@ from robosc.model import sct
 from robosc.model.semantics.printing import conjunction, disjunction
 from robosc.synthesis.decoding import Ranges, codes, complement, cost, is_one_of
 from robosc.synthesis.encoding import pick
+from robosc.synthesis.factored import Factoring, TooLongError, expression_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -25,27 +28,35 @@ if TYPE_CHECKING:
 Product: TypeAlias = "dict[Domain, Ranges]"
 #: An element with one value, and the states in which it has that value.
 _Literal: TypeAlias = "tuple[Domain, Diagram]"
-#: Constant cost of a product, in nodes, in addition to the nodes of the states.
-_OVERHEAD = 2000
+#: Maximum number of conditions of an expression that is worth the time of a cover.
+_READABLE = 64
+#: Maximum number of parts of the search for an expression, for each condition that it may have.
+_SEARCHED = 100
 
 
 def separating_expression(
-    encoding: Encoding, inside: Diagram, outside: Diagram, domains: Sequence[Domain], effort: int | None = None
+    encoding: Encoding, inside: Diagram, outside: Diagram, domains: Sequence[Domain], longest: int | None = None
 ) -> ex.Expression | None:
     """Return an expression that is true in all states of `inside` and false in all of `outside`.
 
-    Neither set is empty, and both depend on `domains` only. `effort` is the maximum number of visited nodes; beyond it,
-    the result is None. The expression is a cover of `inside` or a negated cover of `outside`, whichever is shorter.
+    Neither set is empty, and both depend on `domains` only. If the expression has more conditions on an element than
+    `longest`, the result is None. A short expression is a cover of `inside` or a negated cover of `outside`, whichever
+    is shorter. A long one is nested, since a cover would take much longer.
     """
-    product = _OVERHEAD + inside.node_count() + outside.node_count()
-    covers = _shorter_covers(
-        _Cover(encoding, inside, outside, domains),
-        _Cover(encoding, outside, inside, domains),
-        None if effort is None else effort // product,
-    )
-    if covers is None:
+    factoring = Factoring(encoding, domains, inf if longest is None else _SEARCHED * longest)
+    try:
+        factored, excluded = factoring.separating(inside, outside), factoring.separating(outside, inside)
+    except TooLongError:
         return None
-    positive, negative = covers
+    shorter = min(factored, excluded, key=lambda candidate: candidate.length)
+    if longest is not None and shorter.length > longest:
+        return None
+    if shorter.length > _READABLE:
+        expression = expression_of(shorter)
+        return expression if shorter is factored else ex.Negation(operand=expression)
+    positive, negative = _shorter_covers(
+        _Cover(encoding, inside, outside, domains), _Cover(encoding, outside, inside, domains)
+    )
     if positive is not None and (negative is None or _length(positive) <= _length(negative)):
         result = disjunction(_product(product) for product in positive)
     else:
@@ -174,19 +185,12 @@ def _readable(domain: Domain, needed: Ranges, free: Ranges) -> Ranges:
     )
 
 
-def _shorter_covers(
-    positive: _Cover, negative: _Cover, most: int | None
-) -> tuple[list[Product] | None, list[Product] | None] | None:
-    """Compute both covers in turns; None for a cover with more products than the other.
-
-    Returns None if both have more than `most` products.
-    """
+def _shorter_covers(positive: _Cover, negative: _Cover) -> tuple[list[Product] | None, list[Product] | None]:
+    """Compute both covers in turns; None for a cover with more products than the other."""
     covers: tuple[list[Product], list[Product]] = ([], [])
     sources = positive.products(), negative.products()
     done = [False, False]
     while not any(done):
-        if most is not None and len(covers[1]) > most:
-            return None
         for index, source in enumerate(sources):
             product = next(source, None)
             if product is None:

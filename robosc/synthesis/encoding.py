@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from robosc.base.diagnostics import Diagnostic, ModelError, Severity
 from robosc.model import expression as ex
@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 
 #: Element with a finite domain. A plant stands for its location.
 Element: TypeAlias = "sct.Plant | sct.DiscreteVariable | sct.Input"
+#: "automatic", "text", or names of elements.
+Order: TypeAlias = "Literal['automatic', 'text'] | Sequence[str]"
 #: Minimum number of values of a wide integer.
 _WIDE = 1 << 10
 _LOGICAL: Mapping[type[ex.Expression], Callable[..., Diagram]] = {
@@ -77,12 +79,14 @@ class BitLayout:
     `wide` maps each wide integer of the state to the integers that its bits are interleaved with, itself included.
     """
 
-    def __init__(self, model: sct.SupervisoryControlModel) -> None:
+    def __init__(self, model: sct.SupervisoryControlModel, order: Order = "automatic") -> None:
+        """Choose the levels in an order (see `robosc.synthesis.Tuning`).
+
+        Raises ValueError if the order names an element that the model does not have.
+        """
         elements = [element for plant in model.plants for element in _elements(plant)]
         index = {element: vertex for vertex, element in enumerate(elements)}
-        order = variable_order(
-            len(elements), [[index[element] for element in edge] for edge in _couplings(model, index)]
-        )
+        vertices = _order(model, index, order)
         self.model = model
         self.plants = list(model.plants)
         self.domains: dict[Element, Domain] = {}
@@ -94,7 +98,7 @@ class BitLayout:
             for element in wide
             if not isinstance(element, sct.Input)
         }
-        for vertex in order:
+        for vertex in vertices:
             if elements[vertex] not in self.domains:
                 self._add([(element, index[element]) for element in together.get(elements[vertex], [elements[vertex]])])
         #: Domains of the state, from the top.
@@ -444,7 +448,29 @@ def _elements(plant: sct.Plant) -> Iterator[Element]:
     yield from plant.inputs
 
 
-def _couplings(model: sct.SupervisoryControlModel, index: Mapping[Element, int]) -> Iterable[list[Element]]:
+def element_name(element: Element) -> str:
+    """Return the name of an element in a file of `--order`: that of its plant, a dot and its own if it has one."""
+    return element.name if isinstance(element, sct.Plant) else f"{element.eContainer().name}.{element.name}"
+
+
+def _order(model: sct.SupervisoryControlModel, index: Mapping[Element, int], order: Order) -> list[int]:
+    """Return the indices of the elements in an order."""
+    if order == "text":
+        return list(index.values())
+    chosen = [] if isinstance(order, str) else _named(index, order)
+    couplings = [[index[element] for element in coupling] for coupling in couplings_of(model, index)]
+    return list(dict.fromkeys([*chosen, *variable_order(len(index), couplings)]))
+
+
+def _named(index: Mapping[Element, int], names: Sequence[str]) -> list[int]:
+    by_name = {element_name(element): vertex for element, vertex in index.items()}
+    for name in names:
+        if name not in by_name:
+            raise ValueError(f"the model has no element `{name}`")
+    return [by_name[name] for name in names]
+
+
+def couplings_of(model: sct.SupervisoryControlModel, index: Mapping[Element, int]) -> Iterable[list[Element]]:
     """Return the sets of elements that occur together.
 
     There is one set for each event, with all that its edges and requirements touch, and one for each predicate.

@@ -14,23 +14,28 @@ Dynamic Systems 2005. A goal may apply to some states only.
 from __future__ import annotations
 
 import sys
+from collections.abc import Generator
 from dataclasses import dataclass, replace
-from functools import reduce
+from functools import cached_property, reduce
 from itertools import groupby
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
 from robosc.synthesis.acceleration import Acceleration
 from robosc.synthesis.relation import Goal, SymbolicStep, join_steps
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Sequence
 
     from robosc.synthesis.bdd import Diagram, Diagrams
     from robosc.synthesis.encoding import Element, Encoding
-    from robosc.synthesis.relation import Move
+    from robosc.synthesis.relation import EventRelation, Move
 
     #: States, their bound, and the number of the first group of steps that they are closed under.
     Part = tuple[Diagram, Diagram, int]
+
+T = TypeVar("T")
+#: Computation that its caller may pause; it returns its result.
+Computation: TypeAlias = Generator[None, None, T]
 
 _PAIR = 2
 #: Maximum number of nodes of a relation with next values that costs no more than two steps without next values.
@@ -45,18 +50,80 @@ _TERMINAL = sys.maxsize
 
 
 @dataclass(frozen=True)
+class Rounds:
+    """Good states of each round of the fixpoint.
+
+    `good` begins with all states that are reachable under the requirements and ends with the final ones. `alive` are,
+    for the same round, the states that reach each of their goals within the good ones through alive states only; a
+    violating state is never alive.
+    """
+
+    good: list[Diagram]
+    alive: list[Diagram]
+
+
+@dataclass(frozen=True)
+class Search:
+    """Problem of the fixpoint.
+
+    `relations` are those of all events, `moves` the events that change something, under the requirements. `violating`
+    are the forbidden states. `goals` are further goals beside the marked states.
+    """
+
+    encoding: Encoding
+    relations: Sequence[EventRelation]
+    moves: Sequence[Move]
+    violating: Diagram
+    goals: Sequence[Goal]
+
+    @property
+    def diagrams(self) -> Diagrams:
+        """Decision diagrams of the encoding."""
+        return self.encoding.diagrams
+
+    @property
+    def steps(self) -> list[SymbolicStep]:
+        """Steps of all events."""
+        return [step for _, step in self.moves]
+
+    @property
+    def uncontrollable(self) -> list[SymbolicStep]:
+        """Steps of the uncontrollable events."""
+        return [step for relation, step in self.moves if not relation.event.controllable]
+
+    @property
+    def all_goals(self) -> list[Goal]:
+        """Goals of every state, the marked ones first."""
+        return [Goal(self.diagrams.true, self.encoding.all_marked), *self.goals]
+
+
 class SupervisedStates:
     """Result of the fixpoint.
 
-    `rounds` are the remaining good states of each round, from all that are reachable under the requirements to the
-    final ones. `alive` are, for the same round, the states that reach each of their goals within the good ones through
-    alive states only; a violating state is never alive. Both lists are empty if no explanations are needed.
-    `controlled` are the states that are reachable under the supervisor; none if the supervisor is empty.
+    `search` is the problem. `controlled` are the states that are reachable under the supervisor; none if the supervisor
+    is empty. If not `restricted`, synthesis removed no state. The rounds are computed on demand: only explanations need
+    them.
     """
 
-    rounds: list[Diagram]
-    alive: list[Diagram]
-    controlled: Diagram
+    def __init__(self, search: Search, controlled: Diagram, reached: Diagram | None = None) -> None:
+        """Store the controlled states, and if known the states that are reachable under the requirements."""
+        self.search = search
+        self.controlled = controlled
+        self.restricted = reached is None or reached != controlled
+        self._reached = reached
+
+    @cached_property
+    def reached(self) -> Diagram:
+        """States that are reachable under the requirements that restrict events."""
+        if self._reached is not None:
+            return self._reached
+        search = self.search
+        return reachable(search.diagrams, search.steps, search.encoding.initial, search.diagrams.true)
+
+    @cached_property
+    def rounds(self) -> Rounds:
+        """Rounds of the fixpoint."""
+        return _rounds(self.search, self.reached)
 
 
 class _Firing:
@@ -86,11 +153,11 @@ class _Saturation:
         self._groups = [group for _, group in groups]
         self._follow = SymbolicStep.image if forwards else SymbolicStep.preimage
 
-    def closure(self, states: Diagram, within: Diagram) -> Diagram:
+    def closure(self, states: Diagram, within: Diagram) -> Computation[Diagram]:
         """Return the least set that holds `states` and is closed under the steps within the bound.
 
         The bound holds `states`, too. The search is a loop with its own stack: synthesis spends its time here, and
-        diagrams are deep.
+        diagrams are deep. The caller may pause it after each firing.
         """
         levels, last, node = self._levels, len(self._levels), self._diagrams.node
         known: dict[Part, Diagram] = {}
@@ -129,6 +196,7 @@ class _Saturation:
                 else:
                     own = upper.part
                     if not self._is_closed_after_turn(upper, closed):
+                        yield
                         waiting.append(upper)
                         part = upper.states, own[1], own[2] + 1
                         break
@@ -257,20 +325,42 @@ def _merged_alike(steps: Sequence[SymbolicStep]) -> list[SymbolicStep]:
 
 def reachable(diagrams: Diagrams, steps: Sequence[SymbolicStep], states: Diagram, within: Diagram) -> Diagram:
     """Return all states that the steps reach from `states` without leaving `within`."""
-    return _Saturation(diagrams, steps, forwards=True).closure(states, within)
+    return completed(_reaching(diagrams, steps, states, within))
 
 
 def coreachable(diagrams: Diagrams, steps: Sequence[SymbolicStep], states: Diagram, within: Diagram) -> Diagram:
     """Return all states from which the steps reach `states` without leaving `within`."""
+    return completed(_coreaching(diagrams, steps, states, within))
+
+
+def completed(computation: Computation[T]) -> T:
+    """Run a computation without a pause and return its result."""
+    while True:
+        try:
+            next(computation)
+        except StopIteration as end:
+            result: T = end.value
+            return result
+
+
+def _reaching(
+    diagrams: Diagrams, steps: Sequence[SymbolicStep], states: Diagram, within: Diagram
+) -> Computation[Diagram]:
+    return _Saturation(diagrams, steps, forwards=True).closure(states, within)
+
+
+def _coreaching(
+    diagrams: Diagrams, steps: Sequence[SymbolicStep], states: Diagram, within: Diagram
+) -> Computation[Diagram]:
     return _Saturation(diagrams, steps, forwards=False).closure(states, within)
 
 
-def keep_alive(diagrams: Diagrams, steps: Sequence[SymbolicStep], goals: Sequence[Goal], allowed: Diagram) -> Diagram:
+def _keeping_alive(search: Search, allowed: Diagram) -> Computation[Diagram]:
     """Return the largest set of allowed states in which each state reaches its goals within the set."""
-    unchanged = 0
+    goals, unchanged = search.all_goals, 0
     while True:
         for goal in goals:
-            reaching = coreachable(diagrams, steps, goal.states & allowed, allowed)
+            reaching = yield from _coreaching(search.diagrams, search.steps, goal.states & allowed, allowed)
             alive = reaching if goal.premise.valid() else allowed & (reaching | ~goal.premise)
             unchanged = unchanged + 1 if alive == allowed else 1
             allowed = alive
@@ -278,66 +368,67 @@ def keep_alive(diagrams: Diagrams, steps: Sequence[SymbolicStep], goals: Sequenc
                 return allowed
 
 
-def supervise(
-    encoding: Encoding, moves: Sequence[Move], violating: Diagram, goals: Iterable[Goal] = ()
-) -> SupervisedStates:
-    """Compute the states of the maximally permissive, controllable, non-blocking supervisor.
-
-    `moves` are all events under the requirements. `violating` are the forbidden states. `goals` are further goals
-    beside the marked states.
-    """
-    steps = [step for _, step in moves]
-    uncontrollable = [step for relation, step in moves if not relation.event.controllable]
-    diagrams, initial = encoding.diagrams, encoding.initial
-    goals = [Goal(diagrams.true, encoding.all_marked), *goals]
-    statistics = diagrams.statistics
-    good = reachable(diagrams, steps, initial, diagrams.true)
-    rounds = [good]
-    alive: list[Diagram] = []
+def _rounds(search: Search, reached: Diagram) -> Rounds:
+    """Return the rounds of the fixpoint, from the states that are reachable under the requirements."""
+    diagrams, initial, good = search.diagrams, search.encoding.initial, reached
+    rounds = Rounds([good], [])
     while True:
-        statistics.rounds += 1
-        statistics.states = encoding.count(good)
-        allowed = good & ~violating
+        allowed = good & ~search.violating
         # If all remaining states were alive, they still are: none needs a removed state to reach a goal.
-        alive.append(good if alive and good == alive[-1] else keep_alive(diagrams, steps, goals, allowed))
-        blocked = good & ~alive[-1]
+        was_alive = bool(rounds.alive) and good == rounds.alive[-1]
+        rounds.alive.append(good if was_alive else completed(_keeping_alive(search, allowed)))
+        blocked = good & ~rounds.alive[-1]
         if not blocked.satisfiable():
-            break
-        good &= ~coreachable(diagrams, uncontrollable, blocked, good)
-        rounds.append(good)
+            return rounds
+        good &= ~coreachable(diagrams, search.uncontrollable, blocked, good)
+        rounds.good.append(good)
         if not (initial & good).satisfiable():
-            return SupervisedStates(rounds, alive, diagrams.false)
-    if len(rounds) == 1:
-        return SupervisedStates(rounds, alive, good)
-    return SupervisedStates(rounds, alive, reachable(diagrams, steps, initial & good, good))
+            return rounds
 
 
-def supervise_only(
-    encoding: Encoding, moves: Sequence[Move], violating: Diagram, goals: Iterable[Goal] = ()
-) -> SupervisedStates:
-    """Compute the same controlled states faster, without the rounds that explanations need.
+def supervise_forwards(search: Search) -> Computation[SupervisedStates]:
+    """Return the states of the maximally permissive, controllable, non-blocking supervisor.
 
-    States that violate an invariant are removed before the first search for states that reach their goals. The
-    remaining states are mostly final.
+    The search begins with the states that are reachable under the requirements. Each round removes states from them.
     """
-    steps = [step for _, step in moves]
-    uncontrollable = [step for relation, step in moves if not relation.event.controllable]
-    diagrams, initial = encoding.diagrams, encoding.initial
-    goals = list(goals)
-    statistics = diagrams.statistics
-    reached = good = reachable(diagrams, steps, initial, diagrams.true)
-    bad, alive = good & violating, diagrams.false
+    diagrams, initial = search.diagrams, search.encoding.initial
+    reached = yield from _reaching(diagrams, search.steps, initial, diagrams.true)
+    good = yield from _good(search, reached)
+    # The set of reachable states stays good: all successors of a reachable state are reachable.
+    controlled = good if good == reached else (yield from _reaching(diagrams, search.steps, initial & good, good))
+    return SupervisedStates(search, controlled, reached)
+
+
+def good_of_all(search: Search) -> Computation[Diagram]:
+    """Return the good states among all states, whether they are reachable or not.
+
+    The states of the supervisor are those that it reaches within. For chains of components, the diagrams of all good
+    states are far smaller than those of the reachable ones. For many other models, they are far larger.
+    """
+    return _good(search, search.encoding.whole(domain.element for domain in search.encoding.layout.state))
+
+
+def supervise_within(search: Search, good: Diagram) -> SupervisedStates:
+    """Return the states of the supervisor within the result of `good_of_all`."""
+    return SupervisedStates(search, reachable(search.diagrams, search.steps, search.encoding.initial & good, good))
+
+
+def _good(search: Search, states: Diagram) -> Computation[Diagram]:
+    """Return the largest part of `states` without violations that uncontrollable events do not leave.
+
+    Each state of it reaches each of its goals within.
+    """
+    diagrams, statistics = search.diagrams, search.diagrams.statistics
+    good, bad, alive = states, states & search.violating, diagrams.false
     while True:
         statistics.rounds += 1
-        statistics.states = encoding.count(good)
+        statistics.states = search.encoding.count(good)
         if bad.satisfiable():
-            good &= ~coreachable(diagrams, uncontrollable, bad, good)
+            good &= ~(yield from _coreaching(diagrams, search.uncontrollable, bad, good))
         # The states that were alive still are: none needs a removed state to reach a goal.
         if good == alive:
-            break
-        alive = keep_alive(diagrams, steps, [Goal(diagrams.true, encoding.all_marked), *goals], good)
+            return good
+        alive = yield from _keeping_alive(search, good)
         bad = good & ~alive
         if not bad.satisfiable():
-            break
-    # The set of reachable states stays good: all successors of a reachable state are reachable.
-    return SupervisedStates([], [], good if good == reached else reachable(diagrams, steps, initial & good, good))
+            return good

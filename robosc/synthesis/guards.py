@@ -11,6 +11,7 @@ from robosc.model import sct
 from robosc.model.semantics.printing import conjunction
 from robosc.model.semantics.walks import copy_tree
 from robosc.synthesis.cover import separating_expression
+from robosc.synthesis.encoding import referenced_elements
 from robosc.synthesis.simplification import simplify
 
 if TYPE_CHECKING:
@@ -28,7 +29,7 @@ class Permission:
 
     A controlled state allows the event exactly if it is in `where`; `where` may contain other states, too. If `where`
     is satisfiable, some controlled state allows the event. The same is true of a conjunction of `where` and a condition
-    on the elements that the event touches. If `unwritten`, the guard exceeds the effort limit and lacks the condition
+    on the elements that the event touches. If `unwritten`, the guard is too long and lacks the condition
     that synthesis added.
     """
 
@@ -53,12 +54,12 @@ class Permission:
 
 
 def permission(
-    relation: EventRelation, controlled: Projection, encoding: Encoding, *, restricts: bool, effort: int | None = None
+    relation: EventRelation, controlled: Projection, encoding: Encoding, *, restricts: bool, longest: int | None = None
 ) -> Permission:
     """Return the guard of a controllable event over the states that are reachable under the supervisor.
 
-    `restricts`: whether synthesis removed any state. If not, it added nothing to any event. `effort` bounds the work
-    for the condition that synthesis adds.
+    `restricts`: whether synthesis removed any state. If not, it added nothing to any event. `longest` is the
+    maximum length of the condition that synthesis adds.
 
     In each of these states, the plants enable the event and both parts of the guard hold exactly if the requirements
     hold and the event leads to such a state again. The guard of a command with inputs reads them. `someRequired` and
@@ -77,11 +78,15 @@ def permission(
     if enabled != required:
         condition = conjunction(_condition(requirement) for requirement in relation.requirements)
         assert condition is not None
-        guard.requirement = simplify(condition, enabled, encoding)
+        # Only the elements that the requirements read matter: without the others, the diagrams are small.
+        read = set(referenced_elements(condition))
+        others = (domain for domain in domains if domain.element not in read)
+        mattering = enabled.exists(encoding.diagrams.cube(level for domain in others for level in domain.levels))
+        guard.requirement = simplify(condition, mattering, encoding)
         guard.requirements.extend(
             requirement
             for requirement in relation.requirements
-            if (enabled & ~relation.condition_of(requirement)).satisfiable()
+            if (mattering & ~relation.condition_of(requirement)).satisfiable()
         )
     where = allowed
     if relation.has_data:
@@ -92,7 +97,7 @@ def permission(
     domains = [*domains, *(encoding.layout.domains[carried] for carried in relation.event.inputs)]
     if allowed != required:
         guard.synthesis = (
-            separating_expression(encoding, allowed, required & ~allowed, domains, effort)
+            separating_expression(encoding, allowed, required & ~allowed, domains, longest)
             if guard.everEnabled
             else ex.BooleanLiteral(value=False)
         )

@@ -40,7 +40,7 @@ class Statistics:
     `operations` the images and preimages of an event. `states` is the number of states at the end of the last search of
     a round. `peak_nodes` is the maximum number of nodes at a time, garbage included. If more memory is needed,
     synthesis restarts (`attempts`): the seconds add up, everything else starts again at 0. Every run gives the same
-    values, except for the seconds.
+    values, except for the seconds. If two strategies ran in turns, the counts are those of the chosen one.
     """
 
     phase: Phase | None = None
@@ -51,6 +51,8 @@ class Statistics:
     operations: int = 0
     states: int = 0
     peak_nodes: int = 0
+    #: Strategy that computed the result, None before that.
+    strategy: str | None = None
 
     @contextmanager
     def during(self, phase: Phase) -> Iterator[None]:
@@ -68,3 +70,8 @@ class Statistics:
         """Start a new attempt."""
         self.attempts += 1
         self.rounds = self.operations = self.states = self.peak_nodes = 0
+
+    def replace_costs(self, other: Statistics) -> None:
+        """Take over the counts of another computation."""
+        self.rounds, self.operations, self.states = other.rounds, other.operations, other.states
+        self.peak_nodes = other.peak_nodes

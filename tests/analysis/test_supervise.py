@@ -7,6 +7,7 @@ import pytest
 import robosc
 from robosc.analysis.supervise import EmptySupervisorError, supervise
 from robosc.base.diagnostics import has_errors
+from robosc.synthesis import Tuning
 from tests.synthesis.classics import philosophers
 
 LIBRARY = """\
@@ -38,7 +39,7 @@ def test_a_supervisor_without_all_its_guards_is_nobodys() -> None:
     whole, short = philosophers(5), philosophers(5)
     assert not has_errors(supervise(whole).findings)
     assert whole.supervisor is not None
-    supervision = supervise(short, effort=0)
+    supervision = supervise(short, tuning=Tuning(longest=0))
     assert supervision.synthesis.unwritten
     assert not has_errors(supervision.findings)
     assert short.supervisor is None

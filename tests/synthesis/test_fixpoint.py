@@ -2,12 +2,18 @@
 
 import pytest
 
-from robosc.synthesis import fixpoint, synthesize, use_encoding
+from robosc.synthesis import fixpoint, order, synthesize, use_encoding
 from robosc.synthesis.relation import event_relations, required_moves, steps
 from tests.sct_models import edge, model, plant
 from tests.synthesis.test_against_oracle import check
 
 ROBOTS = range(4)
+
+
+@pytest.fixture(autouse=True)
+def _no_hubs(monkeypatch):
+    """Order the aisle of the warehouses as any other element, not as a hub."""
+    monkeypatch.setattr(order, "_HUBS", 0)
 
 
 def warehouse(after_entering):

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robosc.synthesis.order import variable_order
+from robosc.synthesis.order import hubs, variable_order
 
 
 def total_span(order, edges):
@@ -32,7 +32,13 @@ def test_it_is_an_order_and_never_much_longer_than_the_given_one(hypergraph):
     size, edges = hypergraph
     order = variable_order(size, edges)
     assert sorted(order) == list(range(size))
-    assert total_span(order, edges) <= 1.25 * total_span(range(size), edges)
+    central = hubs(size, edges)
+    others = [vertex for vertex in order if vertex not in central]
+    assert order == others + central
+    rest = [[others.index(vertex) for vertex in edge if vertex not in central] for edge in edges]
+    rest = [edge for edge in rest if edge]
+    given = sorted(range(len(others)), key=others.__getitem__)
+    assert total_span(range(len(others)), rest) <= 1.25 * total_span(given, rest)
 
 
 def test_a_scrambled_chain_is_put_straight():
@@ -46,3 +52,18 @@ def test_a_scrambled_chain_is_put_straight():
 def test_cells_that_share_nothing_are_kept_together():
     edges = [[cell, cell + 30, cell + 60] for cell in range(30)]
     assert total_span(variable_order(90, edges), edges) == 60
+
+
+def test_an_observer_of_a_ring_comes_last_and_leaves_the_order_of_the_ring():
+    ring = [[place, (place + 1) % 20] for place in range(20)]
+    observed = [[*edge, 20] for edge in ring]
+    assert hubs(21, observed) == [20]
+    assert variable_order(21, observed) == [*variable_order(20, ring), 20]
+
+
+def test_a_vertex_of_three_quarters_of_the_edges_is_no_hub():
+    assert hubs(4, [[0, 1], [0, 2], [0, 3], [2, 3]]) == []
+
+
+def test_vertices_are_no_hubs_if_most_of_them_belong_to_most_edges():
+    assert hubs(3, [[0, 1, 2]] * 4) == []

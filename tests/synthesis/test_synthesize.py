@@ -11,7 +11,7 @@ import pytest
 from robosc.base.diagnostics import ModelError
 from robosc.model.places import Place
 from robosc.model.semantics.printing import SctPrinter
-from robosc.synthesis import Phase, Statistics, bdd, count, solve, synthesize
+from robosc.synthesis import Phase, Statistics, Tuning, bdd, count, solve, synthesize
 from tests.sct_models import edge, model, needs, plant
 from tests.synthesis.classics import philosophers
 
@@ -80,7 +80,7 @@ def test_guards_that_take_too_much_effort_are_left_out():
     def look(solution):
         return solution.synthesis, [permission.where.node_count() for permission in solution.permissions]
 
-    (whole, nodes), (short, same) = solve(philosophers(5), look), solve(philosophers(5), look, effort=0)
+    (whole, nodes), (short, same) = solve(philosophers(5), look), solve(philosophers(5), look, tuning=Tuning(longest=0))
     assert whole.unwritten == {}
     added = [guard.synthesis is not None for guard in whole.supervisor.guards]
     assert True in added

@@ -126,7 +126,7 @@ def _explained(
 def _harmless(system: SynthesizedSystem, event: sct.Event, codes: Codes) -> bool:
     """Return whether synthesis accepts the target of an event: then only another tool's supervisor forbids it."""
     step = system.relations[event].step
-    rounds = system.solution.rounds
+    rounds = system.solution.rounds.good
     given_up = rounds[0] & ~rounds[-1]
     return step is None or not (step.image(system.encoding.state(codes)) & given_up).satisfiable()
 

@@ -24,7 +24,7 @@ from robosc.model.semantics.roles import event_name, is_from_cif, plant_of
 from robosc.model.semantics.walks import copy_tree
 from robosc.synthesis.decoding import value
 from robosc.synthesis.encoding import pick, referenced_elements
-from robosc.synthesis.fixpoint import coreachable, supervise
+from robosc.synthesis.fixpoint import Search, completed, coreachable, supervise_forwards
 from robosc.synthesis.relation import required_moves, steps
 
 if TYPE_CHECKING:
@@ -314,9 +314,10 @@ def cancel_when_due(system: GuardedSystem) -> Verdict:
 
 def maximal_permissiveness(system: GuardedSystem) -> Verdict:
     """Check that every guard forbids a controllable event only where any supervisor must."""
-    required = supervise(
-        system.encoding, required_moves(system.relations.values()), system.violating, system.goals.values()
-    ).controlled
+    relations = list(system.relations.values())
+    goals = list(system.goals.values())
+    search = Search(system.encoding, relations, required_moves(relations), system.violating, goals)
+    required = completed(supervise_forwards(search)).controlled
     controllable = [relation for relation in system.relations.values() if relation.event.controllable]
     denied = {relation: ~system.guard(relation.event) for relation in controllable}
     needless = {

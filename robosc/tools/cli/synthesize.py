@@ -18,7 +18,7 @@ from robosc.model.semantics.naming import enumeration
 from robosc.model.semantics.printing import RobotPrinter, SctPrinter, conjunction
 from robosc.model.semantics.roles import SILENT, assumptions, event_name, input_values
 from robosc.model.semantics.walks import copy_tree
-from robosc.synthesis import count
+from robosc.synthesis import Tuning, count
 from robosc.tools.cli import EMPTY_SUPERVISOR, put, say
 from robosc.tools.cli.options import Paths, chosen_synthesizer, memory, model, paths, synthesizer
 from robosc.tools.cli.progress import show_progress
@@ -33,8 +33,8 @@ if TYPE_CHECKING:
     from robosc.model import expression as ex
     from robosc.synthesis import Counts, Statistics, Synthesis
 
-#: Effort limit for one guard, in visited nodes: some tenths of a second, and far more than a readable guard needs.
-_EFFORT = 500_000
+#: Maximum number of conditions that synthesis adds to a guard that is printed.
+_LONGEST = 200
 
 
 @click.command("synthesize")
@@ -90,7 +90,7 @@ def command(
         try:
             with show_progress(plants) as statistics:
                 supervision = supervise(
-                    plants, memory=megabytes << 20, statistics=statistics, weigh=True, effort=_EFFORT
+                    plants, memory=megabytes << 20, statistics=statistics, weigh=True, tuning=Tuning(longest=_LONGEST)
                 )
         except EmptySupervisorError as error:
             if as_json:
@@ -98,7 +98,7 @@ def command(
             raise
         if assumption is not None:
             plants.plants.remove(assumption)
-            other = diagnose(plants, memory=megabytes << 20, weigh=True, effort=_EFFORT)
+            other = diagnose(plants, memory=megabytes << 20, weigh=True, tuning=Tuning(longest=_LONGEST))
             changes = _changes(plants, supervision.synthesis, other, times)
             if as_json:
                 put(json.dumps({"without": without, **changes}, indent=2))
