@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from robosc.language.cif.parsing import identifier
@@ -42,6 +43,8 @@ def _automaton(automaton: Automaton) -> Iterator[tuple[str, Place]]:
         yield f"  alphabet {names};", automaton.place
     for text, place in automaton.declarations:
         yield f"  {text}", place
+    # Inside an automaton, its variables and states need no qualifier.
+    own = re.compile(rf"(?<![\w.$]){re.escape(identifier(automaton.cif))}\.")
     edges: dict[object, list[Edge]] = {}
     for edge in automaton.edges:
         edges.setdefault(edge.source, []).append(edge)
@@ -52,7 +55,7 @@ def _automaton(automaton: Automaton) -> Iterator[tuple[str, Place]]:
         if attributes:
             yield f"    {' '.join(attributes)}", state.place
         for edge in edges.get(state, ()):
-            yield f"    {_edge(edge)}", edge.place
+            yield f"    {own.sub('', _edge(edge))}", edge.place
     yield "end", automaton.place
 
 

@@ -180,7 +180,9 @@ class _Generator:
             if not new and self._has_states:
                 raise FaultError(token.place, "unresolved-reference", f"there is no state `{keys[0]}`", "declare it")
             known = self._automaton.states[keys[0]] = State(keys[0], token.place)
-            self._states |= dict.fromkeys(keys, known)
+            # A name without a number has the number of its position.
+            keys = keys if number or name.isdecimal() else [name, str(len(self._automaton.states))]
+            self._states = dict.fromkeys(keys, known) | self._states
         return known
 
     def _finish(self) -> None:

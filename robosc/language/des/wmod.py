@@ -397,7 +397,7 @@ class _Module:
             for guard in _expressions(block, "Guards"):
                 for part in self._conjuncts(guard):
                     if not self._next_value(part, bindings, writes):
-                        guards.append(self._names.condition(part, bindings).inner)
+                        guards.append(self._names.condition(part, bindings).text)
             for action in _expressions(block, "Actions"):
                 self._action(action, bindings, writes)
         return guards, writes
@@ -541,7 +541,7 @@ class _Module:
             premises = []
             for steps in product(*alternatives):
                 premise = [part for automaton, edge, _ in steps for part in (*automaton.at(edge.source), *edge.guards)]
-                premises.append(" and ".join(premise) or "true")
+                premises.append(" and ".join(f"({part})" for part in premise) or "true")
                 edge = Edge(only, event, only, steps[0][1].place, premise)
                 values = [value for _, _, value in steps if value is not None]
                 if values:
