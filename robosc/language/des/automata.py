@@ -45,12 +45,16 @@ def construct(place: Place, what: str, hint: str) -> FaultError:
 
 @dataclass(eq=False)
 class Event:
-    """An event: its name in CIF, and whether the supervisor may forbid it; None if no file determines it."""
+    """An event: its name in CIF, and whether the supervisor may forbid it; None if no file determines it.
+
+    The answer of a plant is `final`.
+    """
 
     name: str
     cif: str
     controllable: bool | None
     place: Place
+    final: bool = False
 
 
 @dataclass(eq=False)
@@ -123,19 +127,21 @@ class System:
         taken.add(fresh)
         return fresh
 
-    def event(self, name: str, place: Place, *, controllable: bool | None) -> Event:
+    def event(self, name: str, place: Place, *, controllable: bool | None, final: bool = True) -> Event:
         """Return the event of a name, which is created if it is new.
 
-        Raises FaultError if another file determines the opposite.
+        Raises FaultError if another plant determines the opposite.
         """
         event = self.events.get(name)
         if event is None:
-            event = self.events[name] = Event(name, self.fresh(name, "e"), controllable, place)
-        elif event.controllable is None:
-            event.controllable = controllable
-        elif controllable is not None and event.controllable != controllable:
-            message = f"the event `{name}` is {'un' * event.controllable}controllable here, elsewhere it is not"
+            event = self.events[name] = Event(name, self.fresh(name, "e"), None, place)
+        if controllable is None:
+            return event
+        if final and event.final and event.controllable != controllable:
+            message = f"the event `{name}` is {'un' * (not controllable)}controllable here, but not in another plant"
             raise FaultError(place, "automata-declaration", message, "make it the same in all plants")
+        if final or not event.final:
+            event.controllable, event.final = controllable, final
         return event
 
     def automaton(self, name: str, place: Place, *, requirement: bool) -> Automaton:

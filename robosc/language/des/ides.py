@@ -59,8 +59,8 @@ def _event(element: Element, source: Source, system: System, *, requirement: boo
     properties = _properties(element)
     if "observable" not in properties and not requirement:
         system.hidden(name, source.place(element))
-    controllable = None if requirement else "controllable" in properties
-    return system.event(name, source.place(element), controllable=controllable)
+    controllable = "controllable" in properties
+    return system.event(name, source.place(element), controllable=controllable, final=not requirement)
 
 
 def _properties(element: Element) -> set[str]:

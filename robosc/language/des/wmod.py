@@ -18,7 +18,7 @@ from robosc.base.diagnostics import Severity
 from robosc.language.cif.parsing import identifier
 from robosc.language.des.automata import Automaton, Edge, Event, FaultError, State, System, construct
 from robosc.language.des.files import attribute
-from robosc.language.des.wmod_expressions import EXPRESSIONS, Enumeration, Names, Value, Variable
+from robosc.language.des.wmod_expressions import EXPRESSIONS, Enumeration, Names, Value, Variable, compared, number
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -449,7 +449,7 @@ class _Module:
             message = f"`{name}` is assigned twice"
             raise FaultError(self._source.place(target), "repeated-assignment", message, "assign it once")
         if variable.values is not None:
-            value = self._names.number(node, value)
+            value = self._names.as_number(node, value)
         elif value.type is not variable.enumeration:
             message = f"`{name}` has no value `{value.text}`"
             raise FaultError(self._source.place(node), "type", message)
@@ -545,7 +545,7 @@ class _Module:
                 edge = Edge(only, event, only, steps[0][1].place, premise)
                 values = [value for _, _, value in steps if value is not None]
                 if values:
-                    edge.guards += [f"{values[0].inner} = {other.inner}" for other in values[1:]]
+                    edge.guards += [compared(values[0], "=", other).text for other in values[1:]]
                     edge.guards += _fitting(variable, values[0])
                     edge.updates.append(f"{identifier(variable.cif)} := {values[0].text}")
                 owner.edges.append(edge)
@@ -555,10 +555,7 @@ class _Module:
 
 
 def _fitting(variable: Variable, value: Value) -> list[str]:
-    """Return the conditions for a value to be one of its variable.
-
-    A subtrahend is moved to the other side, because CIF's synthesis supports `-` in assignments only.
-    """
+    """Return the conditions for a value to be one of its variable."""
     if variable.values is None or not isinstance(value.type, range):
         assert variable.enumeration is not None
         if set(value.atoms) <= set(variable.atoms):
@@ -569,16 +566,7 @@ def _fitting(variable: Variable, value: Value) -> list[str]:
         bounds.append((">=", variable.values.start))
     if value.type.stop > variable.values.stop:
         bounds.append(("<=", variable.values.stop - 1))
-    left, right = value.difference or (value.inner, "")
-    return [f"{left} {comparison} {_sum(right, bound)}" for comparison, bound in bounds]
-
-
-def _sum(text: str, number: int) -> str:
-    if not text:
-        return str(number)
-    if text.isdecimal():
-        return str(int(text) + number)
-    return text if number == 0 else f"{text} + {number}" if number > 0 else f"{text} - {-number}"
+    return [compared(value, comparison, number(bound)).text for comparison, bound in bounds]
 
 
 def _expressions(node: Element, part: str) -> Iterator[Element]:

@@ -193,7 +193,7 @@ class Names:
         """Return an expression over variables and states. Raises FaultError if it is wrong."""
         match node.name:
             case "IntConstant":
-                return _integer(self._number(node))
+                return number(self._number(node))
             case "SimpleIdentifier" | "IndexedIdentifier" | "QualifiedIdentifier":
                 return self._named(node, bindings)
             case "UnaryExpression":
@@ -211,7 +211,7 @@ class Names:
             return Value(variable.text, variable.enumeration or variable.values, variable.atoms)
         constant = self.constant(node, bindings)
         if isinstance(constant, int):
-            return _integer(constant)
+            return number(constant)
         if isinstance(constant, str) and constant in self.enumerations:
             enumeration = self.enumerations[constant]
             return Value(enumeration.literals[constant], enumeration, (constant,))
@@ -229,7 +229,7 @@ class Names:
             raise FaultError(self.source.place(node), "type", f"`{value.text}` is not a condition")
         return value
 
-    def number(self, node: Element, value: Value) -> Value:
+    def as_number(self, node: Element, value: Value) -> Value:
         """Return a value as a number: a condition is 1 or 0. Raises FaultError for a value of an enumeration."""
         if value.type is None:
             return Value(f"if {value.text}: 1 else 0 end", range(2), compound=True)
@@ -243,7 +243,7 @@ class Names:
         if operator == "!":
             return Value(f"not {self.condition(operand, bindings).inner}", None, compound=True)
         if operator == "-":
-            value = self.number(operand, self.value(operand, bindings))
+            value = self.as_number(operand, self.value(operand, bindings))
             assert isinstance(value.type, range)
             return Value(f"-{value.inner}", range(1 - value.type.stop, 1 - value.type.start), compound=True)
         hint = "write an action `x = …`, or a guard `x' == …` beside other conditions"
@@ -265,9 +265,9 @@ class Names:
         first, second = self.value(left, bindings), self.value(right, bindings)
         if operator in ("==", "!=") and isinstance(first.type, Enumeration) and first.type is second.type:
             return Value(f"{first.inner} {_COMPARISONS[operator]} {second.inner}", None, compound=True)
-        first, second = self.number(left, first), self.number(right, second)
+        first, second = self.as_number(left, first), self.as_number(right, second)
         if operator in _COMPARISONS:
-            return Value(f"{first.inner} {_COMPARISONS[operator]} {second.inner}", None, compound=True)
+            return compared(first, _COMPARISONS[operator], second)
         assert isinstance(first.type, range)
         assert isinstance(second.type, range)
         values = _result(operator, first.type, second.type)
@@ -296,7 +296,7 @@ class Names:
         name = attribute(node, "FunctionName", self.source).lstrip("\\")
         arguments = list(_nested(node, ("ArgumentList",)))
         if name in ("min", "max") and len(arguments) == 2:
-            first, second = (self.number(child, self.value(child, bindings)) for child in arguments)
+            first, second = (self.as_number(child, self.value(child, bindings)) for child in arguments)
             assert isinstance(first.type, range)
             assert isinstance(second.type, range)
             best = min if name == "min" else max
@@ -305,7 +305,20 @@ class Names:
         raise construct(self.source.place(node), f"the function `{name}`", "write the value as conditions")
 
 
-def _integer(number: int) -> Value:
+def compared(left: Value, operator: str, right: Value) -> Value:
+    """Return a comparison. Subtrahends move to the other side: CIF's synthesis supports `-` in assignments only."""
+    (plus, minus), (other_plus, other_minus) = (value.difference or (value.inner, "0") for value in (left, right))
+    sides = (_sum(plus, other_minus), _sum(other_plus, minus))
+    return Value(f" {operator} ".join(sides), None, compound=True)
+
+
+def _sum(left: str, right: str) -> str:
+    if left.isdecimal() and right.isdecimal():
+        return str(int(left) + int(right))
+    return left if right == "0" else right if left == "0" else f"{left} + {right}"
+
+
+def number(number: int) -> Value:
     return Value(str(number), range(number, number + 1), compound=number < 0)
 
 
