@@ -66,7 +66,8 @@ def read(path: Path | str, documents: Documents | None = None, *, supervised: bo
 def read_supervised(model: sct.SupervisoryControlModel, text: str, own_text: str | None = None) -> CifReading | None:
     """Read a specification that imports the one of a model, as if its file were beside the model's file.
 
-    `own_text` is the specification of a model that was not read from CIF. Returns None if the model's own specification is no longer readable.
+    `own_text` is the specification of a model that was not read from CIF. Returns None if the model's own specification
+    is no longer readable.
     """
     assert model.source is not None
     assert model.source.file is not None

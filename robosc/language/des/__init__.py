@@ -92,8 +92,7 @@ def _system(path: Path, documents: Documents) -> tuple[System, dict[str, str]]:
             _read_into(system, partial(wmod.read, source, system))
         else:
             _read_into(system, partial(_AUTOMATON[path.suffix], source, system, requirement=False))
-    if not has_errors(system.findings):
-        system.check()
+    system.check()
     system.name_states()
     return system, texts
 
@@ -125,8 +124,8 @@ def _read_list(source: Source, system: System, texts: dict[str, str], documents:
                 raise FaultError(place, "automata-construct", message, f"name files of {' or '.join(_AUTOMATON)}")
             try:
                 part, findings = open_source(file, name.strip(), documents)
-            except OSError as error:
-                message = f"the file `{file}` cannot be read: {error.strerror or error}"
+            except (OSError, ValueError) as error:  # A path may contain a null character.
+                message = f"the file `{file}` cannot be read: {getattr(error, 'strerror', None) or error}"
                 raise FaultError(place, "unresolved-reference", message) from None
             texts[str(file)] = part.text.content
             system.findings += findings

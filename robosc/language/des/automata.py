@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from robosc.base.diagnostics import Diagnostic, Severity
+from robosc.base.diagnostics import Diagnostic, Severity, has_errors
 from robosc.language.cif.parsing import identifier
 from robosc.model.semantics.naming import Names
 
@@ -128,10 +128,7 @@ class System:
         return fresh
 
     def event(self, name: str, place: Place, *, controllable: bool | None, final: bool = True) -> Event:
-        """Return the event of a name, which is created if it is new.
-
-        Raises FaultError if another plant determines the opposite.
-        """
+        """Return the event of a name, created if it is new. Report if another plant determines the opposite."""
         event = self.events.get(name)
         if event is None:
             event = self.events[name] = Event(name, self.fresh(name, "e"), None, place)
@@ -139,8 +136,9 @@ class System:
             return event
         if final and event.final and event.controllable != controllable:
             message = f"the event `{name}` is {'un' * (not controllable)}controllable here, but not in another plant"
-            raise FaultError(place, "automata-declaration", message, "make it the same in all plants")
-        if final or not event.final:
+            fault = FaultError(place, "automata-declaration", message, "make it the same in all plants")
+            self.findings.append(fault.finding())
+        elif final or not event.final:
             event.controllable, event.final = controllable, final
         return event
 
@@ -172,15 +170,20 @@ class System:
         self.findings.append(fault.finding(Severity.WARNING))
 
     def check(self) -> None:
-        """Report faults of whole automata: no plant, not exactly one initial state, and ambiguous commands."""
+        """Report faults of whole automata: no plant, or not exactly one initial state.
+
+        Only the latter is no consequence of other faults.
+        """
+        faults = []
         if all(automaton.requirement for automaton in self.automata):
-            fault = FaultError(self.place, "automata-declaration", "there is no plant", "name at least one plant")
-            self.findings.append(fault.finding())
+            faults.append(FaultError(self.place, "automata-declaration", "there is no plant", "make one a plant"))
         for automaton in self.automata:
-            initial = [state for state in automaton.states.values() if state.initial]
-            if not initial:
-                fault = FaultError(automaton.place, "initial-state", f"`{automaton.name}` has no initial state")
-                self.findings.append(fault.finding())
-            for state in initial[1:]:
-                message = f"`{automaton.name}` has several initial states"
-                self.findings.append(FaultError(state.place, "initial-state", message, "keep one of them").finding())
+            if not any(state.initial for state in automaton.states.values()):
+                message, hint = f"`{automaton.name}` has no initial state", "make one of its states initial"
+                faults.append(FaultError(automaton.place, "initial-state", message, hint))
+        if not has_errors(self.findings):
+            self.findings += [fault.finding() for fault in faults]
+        for automaton in self.automata:
+            for state in [state for state in automaton.states.values() if state.initial][1:]:
+                message, hint = f"`{automaton.name}` has several initial states", "keep one of them"
+                self.findings.append(FaultError(state.place, "initial-state", message, hint).finding())

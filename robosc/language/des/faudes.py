@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, NamedTuple
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from robosc.language.des.automata import Edge, FaultError, State, construct
 
@@ -25,16 +26,38 @@ _FLAGS = re.compile(r"\+[A-Za-z_]*\+")
 _STATE = re.compile(r"""(?P<name>"[^"]*"|'[^']*'|[^#]*)(?:\#(?P<number>[0-9]+))?""")
 #: Sections whose contents or attributes have a meaning here.
 _KNOWN = frozenset(
-    """Generator System cGenerator EventAttributes Alphabet Event EventSet States StateSet State Consecutive TransRel
-    TransitionRelation Transition InitStates MarkedStates Controllable Initial Marked""".split()
+    [
+        "Generator",
+        "System",
+        "cGenerator",
+        "EventAttributes",
+        "Alphabet",
+        "Event",
+        "EventSet",
+        "States",
+        "StateSet",
+        "State",
+        "Consecutive",
+        "TransRel",
+        "TransitionRelation",
+        "Transition",
+        "InitStates",
+        "MarkedStates",
+        "Controllable",
+        "Initial",
+        "Marked",
+    ]
 )
 #: Sections without a meaning for synthesis.
 _IGNORED = frozenset(["Observable", "Forcible", "Abstraction", "Highlevel", "Name"])
-#: Maximum number of states in a range of numbers.
-_MOST = 1_000_000
+#: Sections that declare states.
+_STATE_SECTIONS = ("States", "StateSet")
+#: Maximum number of states of an automaton with ranges of numbers.
+_MOST = 100_000
 
 
-class _Token(NamedTuple):
+@dataclass(frozen=True)
+class _Token:
     """A word, or the start or end of a section with its attributes."""
 
     text: str
@@ -42,7 +65,7 @@ class _Token(NamedTuple):
     section: bool = False
     end: bool = False
     alone: bool = False
-    attributes: dict[str, str] = {}
+    attributes: dict[str, str] = field(default_factory=dict)
 
 
 def read(source: Source, system: System, *, requirement: bool) -> None:
@@ -68,28 +91,23 @@ class _Generator:
             place = tokens[0].place if tokens else self._source.whole
             raise FaultError(place, "syntax", "a generator begins with `<Generator>`", "is this a file of libFAUDES?")
         open_sections: list[_Token] = []
-        foreign: dict[str, None] = {}
+        foreign: set[str] = set()
         for token in tokens:
             inside = [section.text for section in open_sections]
-            skipped = any(name not in _KNOWN for name in inside)
             if token.end:
                 if not inside or inside[-1] != token.text:
                     raise FaultError(token.place, "syntax", f"`</{token.text}>` ends no section that is open here")
                 open_sections.pop()
-            elif token.section:
-                if not skipped and token.text not in _KNOWN | _IGNORED and token.text not in foreign:
-                    foreign[token.text] = None
-                    with self._system.reporting():
+                continue
+            if all(name in _KNOWN for name in inside):
+                with self._system.reporting():
+                    if token.section and token.text not in _KNOWN | _IGNORED | foreign:
+                        foreign.add(token.text)
                         hint = "convert the automaton to a `Generator` or a `System` without it"
                         raise construct(token.place, f"the section `{token.text}`", hint)
-                if not skipped:
-                    with self._system.reporting():
-                        self._section(token, inside)
-                if not token.alone:
-                    open_sections.append(token)
-            elif not skipped:
-                with self._system.reporting():
-                    self._word(token, inside)
+                    (self._section if token.section else self._word)(token, inside)
+            if token.section and not token.alone:
+                open_sections.append(token)
         if open_sections:
             raise FaultError(open_sections[-1].place, "syntax", f"`<{open_sections[-1].text}>` is not closed")
         self._finish()
@@ -120,24 +138,26 @@ class _Generator:
         section = inside[-1] if inside else ""
         match section:
             case "Alphabet" | "EventSet" if _FLAGS.fullmatch(token.text):
-                if self._event is not None and "C" in token.text:
-                    self._event.controllable = True
-                if self._event is not None and "o" in token.text and not self._requirement:
-                    self._system.hidden(self._event.name, token.place)
+                self._flags(token)
             case "Alphabet" | "EventSet":
                 self._declare(_plain(token.text), token.place)
             case "Controllable":
                 self._known_event(token).controllable = True
-            case "States" | "StateSet":
-                if not _FLAGS.fullmatch(token.text):
-                    self._state(token, new=True)
+            case "States" | "StateSet" if not _FLAGS.fullmatch(token.text):
+                self._state(token, new=True)
             case "Consecutive":
                 self._consecutive(token, inside[-2] if len(inside) > 1 else "")
-            case "TransRel" | "TransitionRelation":
-                if not _FLAGS.fullmatch(token.text):
-                    self._words["TransRel"].append(token)
+            case "TransRel" | "TransitionRelation" if not _FLAGS.fullmatch(token.text):
+                self._words["TransRel"].append(token)
             case "InitStates" | "MarkedStates":
                 self._words[section].append(token)
+
+    def _flags(self, token: _Token) -> None:
+        """Process the attributes of the event before them."""
+        if self._event is not None and "C" in token.text:
+            self._event.controllable = True
+        if self._event is not None and "o" in token.text and not self._requirement:
+            self._system.hidden(self._event.name, token.place)
 
     def _declare(self, name: str, place: Place) -> None:
         # A file without the attribute leaves the choice to others.
@@ -161,12 +181,15 @@ class _Generator:
             first, last = (int(word.text, 0) for word in pending)
         except ValueError:
             raise FaultError(token.place, "syntax", "a range has two numbers of states") from None
-        pending.clear()
-        if last - first >= _MOST:
-            raise construct(token.place, f"more than {_MOST} states in a range", "write the automaton in several ones")
+        finally:
+            pending.clear()
+        if last - first + len(self._automaton.states) >= _MOST:
+            raise construct(token.place, f"more than {_MOST} states", "write the automaton as several ones")
+        if section not in (*_STATE_SECTIONS, "InitStates", "MarkedStates"):
+            raise FaultError(token.place, "syntax", f"`{section}` has no ranges of states")
         for number in range(first, last + 1):
             word = _Token(str(number), token.place)
-            if section in ("States", "StateSet"):
+            if section in _STATE_SECTIONS:
                 self._state(word, new=True)
             else:
                 self._words[section].append(word)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -54,10 +55,8 @@ def open_source(path: Path, name: str, documents: Documents) -> tuple[Source, li
     content = documents.read(path)
     encoding = _ENCODING.match(content)
     if encoding is not None:
-        try:
+        with suppress(LookupError, UnicodeError):  # `decode` reports the first byte that is not UTF-8.
             content = content.decode(encoding[1].decode()).encode("utf-8")
-        except (LookupError, UnicodeError):
-            pass  # `decode` reports the first byte that is not UTF-8.
     text, findings = decode(str(path), content, name)
     return Source(path, text), findings
 
@@ -69,5 +68,3 @@ def attribute(element: markup.Element, name: str, source: Source) -> str:
         message = f"the element `{element.name}` has no attribute `{name}`"
         raise FaultError(source.place(element), "syntax", message)
     return value
-
-

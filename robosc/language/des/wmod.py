@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 
     from robosc.language.des.files import Source
     from robosc.language.des.wmod_expressions import Bindings, Constant
-    from robosc.model.places import Place
     from robosc.model.xmi.markup import Element
 
 _ACCEPTING, _FORBIDDEN = ":accepting", ":forbidden"
@@ -134,8 +133,12 @@ class _Module:
                     self._alias(child, inner)
             return
         body = [child for part in node.children if part.name == "EventAliasExpression" for child in part.children]
-        labels = [label for child in body for part in (child.children if child.name == "EventList" else [child])
-                  for label in self._labels(part, bindings)]
+        labels = [
+            label
+            for child in body
+            for part in (child.children if child.name == "EventList" else [child])
+            for label in self._labels(part, bindings)
+        ]
         self._groups[self._own_name(node, bindings)] = labels
 
     def _labels(self, node: Element, bindings: Bindings) -> Iterator[str]:
@@ -153,9 +156,7 @@ class _Module:
             else:
                 raise FaultError(self._source.place(node), "unresolved-reference", f"there is no event `{name}`")
 
-    def _repeated(
-        self, node: Element, bindings: Bindings
-    ) -> Iterator[tuple[dict[str, Constant], list[Element]]]:
+    def _repeated(self, node: Element, bindings: Bindings) -> Iterator[tuple[dict[str, Constant], list[Element]]]:
         """Yield the values of a loop's variable, each with the contents of the loop."""
         variable = attribute(node, "Name", self._source)
         ranges = [child for child in node.children if child.name in EXPRESSIONS]
@@ -214,32 +215,29 @@ class _Module:
         automaton = self._system.automaton(component.name, place, requirement=_REQUIREMENT[kind])
         component.automaton = self._names.automata[component.name] = automaton
         graph = _child(node, "Graph", self._source)
-        marks = False
         labels = {}
         for state in (child for part in graph.children if part.name == "NodeList" for child in part.children):
             with self._system.reporting():
-                labels[state] = {
-                    name
-                    for part in state.children
-                    if part.name == "EventList"
-                    for child in part.children
-                    for name in self._labels(child, component.bindings)
-                }
-                marks = marks or _ACCEPTING in labels[state]
-                if state.name == "SimpleNode":
-                    name = attribute(state, "Name", self._source)
-                    if name in automaton.states:
-                        raise FaultError(self._source.place(state), "unique-state", f"there are two states `{name}`")
-                    initial = state.attributes.get(("", "Initial")) == "true"
-                    automaton.states[name] = State(name, self._source.place(state), initial=initial)
+                labels[state] = set(self._state(state, component, automaton))
         for state, names in labels.items():
             for inner in self._inside(attribute(state, "Name", self._source), graph, automaton):
                 inner.marked |= _ACCEPTING in names
                 inner.forbidden |= _FORBIDDEN in names
-        if not marks:
+        if not any(_ACCEPTING in names for names in labels.values()):
             # An automaton without the proposition accepts everywhere.
             for inner in automaton.states.values():
                 inner.marked = True
+
+    def _state(self, node: Element, component: _Component, automaton: Automaton) -> Iterator[str]:
+        """Create a state, unless the element is a group; yield its propositions."""
+        name = attribute(node, "Name", self._source)
+        if node.name == "SimpleNode":
+            if name in automaton.states:
+                raise FaultError(self._source.place(node), "unique-state", f"there are two states `{name}`")
+            initial = node.attributes.get(("", "Initial")) == "true"
+            automaton.states[name] = State(name, self._source.place(node), initial=initial)
+        for child in _in_lists(node, "EventList"):
+            yield from self._labels(child, component.bindings)
 
     def _inside(self, name: str, graph: Element, automaton: Automaton) -> Iterator[State]:
         """Yield the state of this name, or the states in the group of this name."""
@@ -301,7 +299,9 @@ class _Module:
         node, names = component.node, self._names
         place = self._source.place(node)
         if component.name in names.variables or component.name in names.automata:
-            raise FaultError(place, "automata-declaration", f"there are two components `{component.name}`", "rename one")
+            raise FaultError(
+                place, "automata-declaration", f"there are two components `{component.name}`", "rename one"
+            )
         kind = next(_expressions(node, "VariableRange"), None)
         if kind is None:
             raise FaultError(place, "syntax", f"the variable `{component.name}` has no range")
@@ -345,35 +345,20 @@ class _Module:
 
     def _edges(self, component: _Component, automaton: Automaton) -> None:
         graph = _child(component.node, "Graph", self._source)
-        for blocked in (child for child in graph.children if child.name == "LabelBlock"):
-            for child in blocked.children:
-                automaton.alphabet |= dict.fromkeys(self._events(child, component))
-        nodes = [edge for part in graph.children if part.name == "EdgeList" for edge in part.children]
+        for child in _in_lists(graph, "LabelBlock"):
+            automaton.alphabet |= dict.fromkeys(self._events(child, component))
         written: dict[tuple[State, Event], list[tuple[int, Edge, dict[Variable, Value]]]] = {}
-        for node in (node for node in nodes if node.name == "Edge"):
+        for node in (node for node in _in_lists(graph, "EdgeList") if node.name == "Edge"):
             with self._system.reporting():
-                start, end = (attribute(node, name, self._source) for name in ("Source", "Target"))
-                sources, targets = (list(self._inside(name, graph, automaton)) for name in (start, end))
-                for name, found in ((start, sources), (end, targets)):
-                    if not found:
-                        raise FaultError(self._source.place(node), "unresolved-reference", f"there is no state `{name}`")
-                if len(targets) > 1:
-                    raise construct(self._source.place(node), "edges to a group of states", "write one for each state")
+                sources, target = self._ends(node, graph, automaton)
                 guards, writes = self._step(node, component.bindings)
-                events = [
-                    event
-                    for part in node.children
-                    if part.name == "LabelBlock"
-                    for child in part.children
-                    for event in self._events(child, component)
-                ]
+                events = [event for child in _in_lists(node, "LabelBlock") for event in self._events(child, component)]
                 self._count += len(events) * len(sources)
                 if self._count > _MOST_EDGES:
                     raise construct(self._source.place(node), f"more than {_MOST_EDGES} edges", "use fewer")
-                for source in sources:
-                    for event in dict.fromkeys(events):
-                        edge = Edge(source, event, targets[0], self._source.place(node), list(guards))
-                        written.setdefault((source, event), []).append((len(sources), edge, writes))
+                for source, event in product(sources, dict.fromkeys(events)):
+                    edge = Edge(source, event, target, self._source.place(node), list(guards))
+                    written.setdefault((source, event), []).append((len(sources), edge, writes))
         for alternatives in written.values():
             # The edges of an inner group, or of the state itself, take precedence over those of the groups around it.
             innermost = min(size for size, _, _ in alternatives)
@@ -382,6 +367,19 @@ class _Module:
                     automaton.edges.append(edge)
                     automaton.alphabet[edge.event] = None
                     component.writes[edge] = writes
+
+    def _ends(self, node: Element, graph: Element, automaton: Automaton) -> tuple[list[State], State]:
+        """Return the states from which an edge leads, and the state to which it leads."""
+        ends = []
+        for role in ("Source", "Target"):
+            name = attribute(node, role, self._source)
+            ends.append(list(self._inside(name, graph, automaton)))
+            if not ends[-1]:
+                raise FaultError(self._source.place(node, role), "unresolved-reference", f"there is no state `{name}`")
+        sources, targets = ends
+        if len(targets) > 1:
+            raise construct(self._source.place(node), "edges to a group of states", "write one for each state")
+        return sources, targets[0]
 
     def _events(self, node: Element, component: _Component) -> Iterator[Event]:
         """Yield the events of a label. Propositions on edges have no meaning."""
@@ -395,9 +393,11 @@ class _Module:
         writes: dict[Variable, Value] = {}
         for block in (child for child in node.children if child.name == "GuardActionBlock"):
             for guard in _expressions(block, "Guards"):
-                for part in self._conjuncts(guard):
-                    if not self._next_value(part, bindings, writes):
-                        guards.append(self._names.condition(part, bindings).text)
+                guards += [
+                    self._names.condition(part, bindings).text
+                    for part in self._conjuncts(guard)
+                    if not self._next_value(part, bindings, writes)
+                ]
             for action in _expressions(block, "Actions"):
                 self._action(action, bindings, writes)
         return guards, writes
@@ -463,6 +463,7 @@ class _Module:
             for name in self._written(component):
                 if name in self._names.variables:
                     self._writers.setdefault(self._names.variables[name], {})[component] = None
+        value = self._system.fresh("value", "v")
         for variable in self._names.variables.values():
             writing = [component.automaton for component in self._writers.get(variable, ())]
             if len(writing) == 1 and writing[0] is not None and not writing[0].requirement:
@@ -471,7 +472,7 @@ class _Module:
             else:
                 variable.owner = self._system.automaton(variable.name, variable.place, requirement=False)
                 variable.owner.states[""] = State("S", variable.place, initial=True, marked=True)
-                variable.cif = self._system.fresh(f"{variable.name}_value", "v")
+                variable.cif = value
             kind = variable.enumeration.cif if variable.enumeration is not None else ""
             if variable.values is not None:
                 kind = f"int[{variable.values.start}..{variable.values.stop - 1}]"
@@ -525,7 +526,9 @@ class _Module:
             alternatives = []
             permissive = False
             for component in components:
-                steps = [(edge, writes.get(variable)) for edge, writes in component.writes.items() if edge.event is event]
+                steps = [
+                    (edge, writes.get(variable)) for edge, writes in component.writes.items() if edge.event is event
+                ]
                 if all(value is None for _, value in steps):
                     continue
                 sources = [edge.source for edge, _ in steps]
@@ -539,11 +542,11 @@ class _Module:
                 what = f"more than {_MOST} joint steps of `{event.name}` that write `{variable.name}`"
                 raise construct(variable.place, what, "write the variable in one plant only")
             premises = []
-            for steps in product(*alternatives):
-                premise = [part for automaton, edge, _ in steps for part in (*automaton.at(edge.source), *edge.guards)]
+            for joint in product(*alternatives):
+                premise = [part for automaton, edge, _ in joint for part in (*automaton.at(edge.source), *edge.guards)]
                 premises.append(" and ".join(f"({part})" for part in premise) or "true")
-                edge = Edge(only, event, only, steps[0][1].place, premise)
-                values = [value for _, _, value in steps if value is not None]
+                edge = Edge(only, event, only, joint[0][1].place, premise)
+                values = [value for _, _, value in joint if value is not None]
                 if values:
                     edge.guards += [compared(values[0], "=", other).text for other in values[1:]]
                     edge.guards += _fitting(variable, values[0])

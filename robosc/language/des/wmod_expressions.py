@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator as operators
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
@@ -10,7 +11,7 @@ from robosc.language.des.automata import FaultError, construct
 from robosc.language.des.files import attribute
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
     from robosc.language.des.automata import Automaton
     from robosc.language.des.files import Source
@@ -19,12 +20,31 @@ if TYPE_CHECKING:
 
 #: Names of the elements that are expressions.
 EXPRESSIONS = frozenset(
-    """BinaryExpression UnaryExpression IntConstant SimpleIdentifier IndexedIdentifier QualifiedIdentifier
-    EnumSetExpression FunctionCallExpression""".split()
+    [
+        "BinaryExpression",
+        "UnaryExpression",
+        "IntConstant",
+        "SimpleIdentifier",
+        "IndexedIdentifier",
+        "QualifiedIdentifier",
+        "EnumSetExpression",
+        "FunctionCallExpression",
+    ]
 )
 _COMPARISONS = {"==": "=", "!=": "!=", "<": "<", "<=": "<=", ">": ">", ">=": ">="}
 _ARITHMETIC = {"+": "+", "-": "-", "*": "*", "/": "div", "%": "mod"}
 _LOGIC = {"&": "and", "|": "or"}
+_CONSTANTS: dict[str, Callable[[int, int], int]] = {
+    "<": operators.lt,
+    "<=": operators.le,
+    ">": operators.gt,
+    ">=": operators.ge,
+    "+": operators.add,
+    "-": operators.sub,
+    "*": operators.mul,
+    "&": lambda left, right: bool(left and right),
+    "|": lambda left, right: bool(left or right),
+}
 #: A constant: a whole number, an atom of an enumeration, or a set of them.
 Constant: TypeAlias = "int | str | range | tuple[str, ...]"
 Bindings: TypeAlias = "Mapping[str, Constant]"
@@ -101,19 +121,7 @@ class Names:
             case "EnumSetExpression":
                 return tuple(self.name(child, bindings) for child in node.children if child.name in EXPRESSIONS)
             case "SimpleIdentifier" | "IndexedIdentifier" | "QualifiedIdentifier":
-                name = self.name(node, bindings)
-                if name in bindings:
-                    return bindings[name]
-                if name in self.constants:
-                    if depth > len(self.constants):
-                        raise FaultError(
-                            self.source.place(node), "cyclic-definition", f"`{name}` is computed from itself"
-                        )
-                    return self.constant(self.constants[name], bindings, depth + 1)
-                if name in self.variables:
-                    message = f"`{name}` is a variable, expected a constant"
-                    raise FaultError(self.source.place(node), "type", message)
-                return name
+                return self._constant_of(node, bindings, depth)
             case "UnaryExpression":
                 operand = self.constant(_only(node, 1, self.source)[0], bindings, depth)
                 operator = attribute(node, "Operator", self.source)
@@ -123,6 +131,19 @@ class Names:
                 operands = [self.constant(child, bindings, depth) for child in _only(node, 2, self.source)]
                 return self._combined(node, *operands)
         raise FaultError(self.source.place(node), "type", "this is not a constant")
+
+    def _constant_of(self, node: Element, bindings: Bindings, depth: int) -> Constant:
+        """Return the constant of a name: of a loop, of an alias, or an atom."""
+        name = self.name(node, bindings)
+        if name in bindings:
+            return bindings[name]
+        if name in self.constants:
+            if depth > len(self.constants):
+                raise FaultError(self.source.place(node), "cyclic-definition", f"`{name}` is computed from itself")
+            return self.constant(self.constants[name], bindings, depth + 1)
+        if name in self.variables:
+            raise FaultError(self.source.place(node), "type", f"`{name}` is a variable, expected a constant")
+        return name
 
     def _number(self, node: Element) -> int:
         text = attribute(node, "Value", self.source)
@@ -139,30 +160,13 @@ class Names:
         if operator in ("==", "!="):
             return int((left == right) == (operator == "=="))
         if isinstance(left, int) and isinstance(right, int):
-            match operator:
-                case "..":
-                    return range(left, right + 1)
-                case "<":
-                    return int(left < right)
-                case "<=":
-                    return int(left <= right)
-                case ">":
-                    return int(left > right)
-                case ">=":
-                    return int(left >= right)
-                case "&":
-                    return int(bool(left and right))
-                case "|":
-                    return int(bool(left or right))
-                case "+":
-                    return left + right
-                case "-":
-                    return left - right
-                case "*" if abs(left) < _MOST and abs(right) < _MOST:
-                    return left * right
-                case "/" | "%" if right:
-                    quotient = abs(left) // abs(right) * (1 if (left < 0) == (right < 0) else -1)
-                    return quotient if operator == "/" else left - quotient * right
+            if operator == "..":
+                return range(left, right + 1)
+            if operator in ("/", "%") and right:
+                quotient = abs(left) // abs(right) * (1 if (left < 0) == (right < 0) else -1)
+                return quotient if operator == "/" else left - quotient * right
+            if operator in _CONSTANTS and max(abs(left), abs(right)) < _MOST:
+                return int(_CONSTANTS[operator](left, right))
         raise FaultError(self.source.place(node), "type", f"`{operator}` does not apply to these constants")
 
     def values(self, node: Element, bindings: Bindings) -> list[Constant]:
@@ -318,8 +322,9 @@ def _sum(left: str, right: str) -> str:
     return left if right == "0" else right if left == "0" else f"{left} + {right}"
 
 
-def number(number: int) -> Value:
-    return Value(str(number), range(number, number + 1), compound=number < 0)
+def number(value: int) -> Value:
+    """Return a whole number as an expression."""
+    return Value(str(value), range(value, value + 1), compound=value < 0)
 
 
 def _result(operator: str, first: range, second: range) -> range | None:

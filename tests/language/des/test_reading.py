@@ -49,7 +49,8 @@ def test_models_have_their_published_count(name: str, states: int) -> None:
 
 def node(name: str, *propositions: str, initial: bool = False) -> str:
     inside = "".join(f'<SimpleIdentifier Name="{name}"/>' for name in propositions)
-    return f'<SimpleNode Name="{name}"{" Initial=\"true\"" if initial else ""}><EventList>{inside}</EventList></SimpleNode>\n'
+    start = ' Initial="true"' * initial
+    return f'<SimpleNode Name="{name}"{start}><EventList>{inside}</EventList></SimpleNode>\n'
 
 
 def step(source: str, target: str, event: str, guard: str = "", actions: str = "") -> str:
@@ -108,7 +109,9 @@ def test_a_primed_guard_is_an_action() -> None:
 
 def test_writers_of_one_variable_agree() -> None:
     # `go` is possible while both values are equal: at n = 0 only.
-    first = component("A", "PLANT", node("a", initial=True), step("a", "a", "go", actions=assign("n", NUMBER.format(2))))
+    first = component(
+        "A", "PLANT", node("a", initial=True), step("a", "a", "go", actions=assign("n", NUMBER.format(2)))
+    )
     second = component(
         "B", "PLANT", node("b", initial=True), step("b", "b", "go", actions=assign("n", expression("n + 2")))
     )
@@ -117,7 +120,9 @@ def test_writers_of_one_variable_agree() -> None:
 
 def test_values_may_be_names() -> None:
     edges = step("a", "a", "go", expression("c == red"), assign("c", '<SimpleIdentifier Name="green"/>'))
-    states = count_of(variable("c", COLORS, expression("c == red")), component("A", "PLANT", node("a", initial=True), edges))
+    states = count_of(
+        variable("c", COLORS, expression("c == red")), component("A", "PLANT", node("a", initial=True), edges)
+    )
     assert states == 2
 
 
@@ -133,14 +138,15 @@ def test_a_forbidden_state_is_avoided() -> None:
 
 
 def test_an_edge_of_a_group_yields_to_one_of_its_state() -> None:
-    group = '<GroupNode Name="G"><ImmediateChildNodeList><SimpleIdentifier Name="a"/><SimpleIdentifier Name="b"/></ImmediateChildNodeList></GroupNode>'
+    inner = "".join(f'<SimpleIdentifier Name="{name}"/>' for name in "ab")
+    group = f'<GroupNode Name="G"><ImmediateChildNodeList>{inner}</ImmediateChildNodeList></GroupNode>'
     nodes = node("a", initial=True) + node("b") + node("c") + node("d") + group
     edges = step("G", "c", "tick") + step("a", "b", "tick") + step("G", "d", "go")
     assert count_of(component("A", "PLANT", nodes, edges)) == 4  # `tick` leads from a to b, and from b to c.
 
 
 def test_loops_and_arrays_are_expanded() -> None:
-    bounds = f"{NUMBER.format(1)}<SimpleIdentifier Name=\"last\"/>"
+    bounds = f'{NUMBER.format(1)}<SimpleIdentifier Name="last"/>'
     constant = (
         f'<ConstantAliasList><ConstantAlias Name="last"><ConstantAliasExpression>{NUMBER.format(3)}'
         "</ConstantAliasExpression></ConstantAlias></ConstantAliasList>\n"
@@ -148,8 +154,15 @@ def test_loops_and_arrays_are_expanded() -> None:
     indexed = '<IndexedIdentifier Name="{}"><SimpleIdentifier Name="i"/></IndexedIdentifier>'
     machine = component("", "PLANT", node("a", initial=True) + node("b"), step("a", "b", indexed.format("start")))
     machine = machine.replace(' Name=""', "").replace("<Graph>", f"{indexed.format('M')}<Graph>")
-    text = module({}, f'<ForeachComponent Name="i">{RANGE.format(bounds, "")}<ComponentList>{machine}</ComponentList></ForeachComponent>', constant)
-    array = f'<EventDecl Kind="CONTROLLABLE" Name="start"><RangeList>{RANGE.format(bounds, "")}</RangeList></EventDecl>\n'
+    text = module(
+        {},
+        f'<ForeachComponent Name="i">{RANGE.format(bounds, "")}'
+        f"<ComponentList>{machine}</ComponentList></ForeachComponent>",
+        constant,
+    )
+    array = (
+        f'<EventDecl Kind="CONTROLLABLE" Name="start"><RangeList>{RANGE.format(bounds, "")}</RangeList></EventDecl>\n'
+    )
     assert counted({"m.wmod": text.replace("</EventDeclList>", f"{array}</EventDeclList>")}, "m.wmod") == 8
 
 
@@ -167,9 +180,10 @@ def test_faults_of_a_module_are_all_found() -> None:
     edges = step("a", "z", "go") + step("a", "b", "jump") + step("b", "a", "go", expression("m > 1"))
     files = small(component("A", "PLANT", nodes, edges))
     assert faults(files, "m.wmod") == [
-        ("m.wmod", 17, 1, "unresolved-reference", "there is no state `z`"),
-        ("m.wmod", 18, 41, "unresolved-reference", "there is no event `jump`"),
-        ("m.wmod", 19, 126, "unresolved-reference", "there is no variable, constant or value `m`"),
+        ("m.wmod", 15, 1, "initial-state", "`A` has several initial states"),
+        ("m.wmod", 18, 18, "unresolved-reference", "there is no state `z`"),
+        ("m.wmod", 19, 41, "unresolved-reference", "there is no event `jump`"),
+        ("m.wmod", 20, 143, "unresolved-reference", "there is no variable, constant or value `m`"),
     ]
 
 
@@ -179,20 +193,22 @@ def test_faults_of_a_module_are_all_found() -> None:
         ((component("A", "SPEC", node("a", initial=True), ""),), "automata-declaration", "there is no plant"),
         ((component("A", "PLANT", node("a"), ""),), "initial-state", "`A` has no initial state"),
         (('<Instance ModuleName="other" Name="o"/>',), "automata-construct", "instances of other modules"),
-        ((levels(3).replace("==", "&lt;="), ""), "initial-state", ""),
-        ((variable("n", RANGE.format(NUMBER.format(0), NUMBER.format(3)), expression("n < 2")),), "initial-state", "2 values"),
+        (
+            (variable("n", RANGE.format(NUMBER.format(0), NUMBER.format(3)), expression("n < 2")),),
+            "initial-state",
+            "2 values",
+        ),
         ((variable("n", NUMBER.format(3), expression("n == 0")),), "type", "expected a range of numbers"),
     ],
 )
 def test_a_fault_of_a_module_has_its_rule(parts: tuple[str, ...], rule: str, message: str) -> None:
-    found = [fault for fault in faults(small(*parts), "m.wmod") if fault[3] == rule or not message]
-    assert any(message in fault[4] for fault in found) or not message
+    assert any(message in fault[4] for fault in faults(small(*parts), "m.wmod") if fault[3] == rule)
 
 
 def test_entities_are_rejected() -> None:
     text = '<!DOCTYPE Module [<!ENTITY a "aaaa">]>\n' + module(_EVENTS, "")
     assert faults({"m.wmod": text.replace('<?xml version="1.0" encoding="UTF-8"?>\n', "")}, "m.wmod") == [
-        ("m.wmod", 1, 1, "syntax", "a document type declaration is not allowed in a model")
+        ("m.wmod", 1, 18, "syntax", "a document type declaration is not allowed in a model")
     ]
 
 
@@ -242,7 +258,7 @@ def test_attributes_may_be_in_the_style_of_xml() -> None:
     text = """<Generator name="machine" ftype="System">
 <Alphabet> <Event name="go"> <Controllable/> </Event> <Event name="tick"/> </Alphabet>
 <StateSet> <State id="1" name="a"> <Initial/> <Marked/> </State> <State id="2" name="b"/> </StateSet>
-<TransitionRelation> <Transition x1="1" event="go" x2="2"/> <Transition x1="b" event="tick" x2="1"/> </TransitionRelation>
+<TransRel> <Transition x1="1" event="go" x2="2"/> <Transition x1="b" event="tick" x2="1"/> </TransRel>
 </Generator>
 """
     assert counted({"m.gen": text}, "m.gen") == 2
@@ -258,7 +274,11 @@ def test_attributes_may_be_in_the_style_of_xml() -> None:
         ('"b" "tick" "a"', '"b" "tick"', (11, 5, "syntax", "a transition has a state, an event and a state")),
         ("</States>", "</State>", (8, 1, "syntax", "`</State>` ends no section that is open here")),
         ("</Generator>", "", (1, 1, "syntax", "`<Generator>` is not closed")),
-        ("<InitStates>", "<Clocks> 1 </Clocks><InitStates>", (13, 1, "automata-construct", "synthesis does not take the section `Clocks`")),
+        (
+            "<InitStates>",
+            "<Clocks> 1 </Clocks><InitStates>",
+            (13, 1, "automata-construct", "synthesis does not take the section `Clocks`"),
+        ),
         ('<InitStates>\n"a"', "<InitStates>", (1, 1, "initial-state", "`m` has no initial state")),
     ],
 )
@@ -278,7 +298,11 @@ def test_an_event_is_controllable_if_a_plant_says_so() -> None:
 
 def test_plants_agree_on_an_event() -> None:
     text = (_MODELS / "cat.xmd").read_text(encoding="utf-8")
-    files = {"a.xmd": text, "b.xmd": text.replace("<controllable/>", "", 1), "all.automata": "plant a.xmd\nplant b.xmd\n"}
+    files = {
+        "a.xmd": text,
+        "b.xmd": text.replace("<controllable/>", "", 1),
+        "all.automata": "plant a.xmd\nplant b.xmd\n",
+    }
     [(file, line, _, rule, message)] = faults(files, "all.automata")
     assert (file, rule) == ("b.xmd", "automata-declaration")
     assert "`c3` is uncontrollable here" in message
@@ -288,7 +312,11 @@ def test_plants_agree_on_an_event() -> None:
 @pytest.mark.parametrize(
     ("line", "rule", "message"),
     [
-        ("plant nowhere.gen", "unresolved-reference", "the file `nowhere.gen` cannot be read: No such file or directory"),
+        (
+            "plant nowhere.gen",
+            "unresolved-reference",
+            "the file `nowhere.gen` cannot be read: No such file or directory",
+        ),
         ("plant m.cif", "automata-construct", "`m.cif` is not a file with one automaton"),
         ("spec m.gen", "syntax", "found `spec`, expected `plant` or `requirement` and a file"),
         ("plant", "syntax", "found `plant`, expected `plant` or `requirement` and a file"),

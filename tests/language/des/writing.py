@@ -6,12 +6,13 @@ A guard or a value is a pair of its Python text and its elements in a `.wmod` fi
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from itertools import product
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+#: The state of each automaton, and the value of each variable.
+State: TypeAlias = "tuple[tuple[str, ...], tuple[int, ...]]"
 _OPERATORS = {"and": "&amp;", "<": "&lt;", "<=": "&lt;=", ">": "&gt;", ">=": "&gt;=", "==": "==", "+": "+", "-": "-"}
 
 
@@ -122,9 +123,23 @@ class System:
 
     def controlled_states(self) -> int:
         """Return the number of reachable states under the supervisor."""
-        start = (tuple(automaton.states[0] for automaton in self.automata), (0,) * len(self.variables))
-        steps: dict[object, list[tuple[str, object]]] = {}
-        bad: set[object] = set()
+        start: State = (tuple(automaton.states[0] for automaton in self.automata), (0,) * len(self.variables))
+        steps, bad = self._explored(start)
+        good = set(steps) - bad
+        before = -1
+        while len(good) != before:
+            before = len(good)
+            back = _grown(good, {state for state in good if self._is_marked(state)}, _reversed(steps))
+            good = {
+                state for state in back if all(target in back or self.events[event] for event, target in steps[state])
+            }
+        onwards = {state: {target for _, target in steps[state]} for state in good}
+        return len(_grown(good, {start} & good, onwards))
+
+    def _explored(self, start: State) -> tuple[dict[State, list[tuple[str, State]]], set[State]]:
+        """Return the permitted steps of each reachable state, and the states that break a requirement."""
+        steps: dict[State, list[tuple[str, State]]] = {}
+        bad: set[State] = set()
         pending = [start]
         while pending:
             state = pending.pop()
@@ -140,38 +155,12 @@ class System:
                     pending.append(target)
                 elif possible and not self.events[event]:
                     bad.add(state)
-        good = set(steps) - bad
-        while True:
-            before = len(good)
-            back = {state for state in good if self._is_marked(state)}
-            grown = True
-            while grown:
-                more = {s for s in good - back if any(target in back for _, target in steps[s])}
-                back |= more
-                grown = bool(more)
-            good = {
-                state
-                for state in back
-                if all(target in back or self.events[event] for event, target in steps[state])
-            }
-            if len(good) == before:
-                break
-        if start not in good:
-            return 0
-        reached, pending = {start}, [start]
-        while pending:
-            for _, target in steps[pending.pop()]:
-                if target in good and target not in reached:
-                    reached.add(target)
-                    pending.append(target)
-        return len(reached)
+        return steps, bad
 
-    def _is_marked(self, state: tuple[tuple[str, ...], tuple[int, ...]]) -> bool:
+    def _is_marked(self, state: State) -> bool:
         return all(name in automaton.marked for name, automaton in zip(state[0], self.automata, strict=True))
 
-    def _step(
-        self, state: tuple[tuple[str, ...], tuple[int, ...]], event: str
-    ) -> tuple[bool, bool, tuple[tuple[str, ...], tuple[int, ...]]]:
+    def _step(self, state: State, event: str) -> tuple[bool, bool, State]:
         """Return whether the plants make an event possible, whether the requirements permit it, and the next state.
 
         A variable makes an event impossible if the automata that write it disagree, or if its value leaves the range.
@@ -182,7 +171,7 @@ class System:
             if event in automaton.alphabet:
                 edges = [edge for edge in automaton.edges if edge.source == name and edge.event == event]
                 taken[automaton.name] = next(
-                    (edge for edge in edges if not edge.guard or eval(edge.guard, {}, values)), None
+                    (edge for edge in edges if not edge.guard or _value(edge.guard, values)), None
                 )
         plants = {automaton.name for automaton in self.automata if not automaton.requirement}
         possible = bool(taken) and all(taken[name] for name in taken.keys() & plants)
@@ -196,12 +185,35 @@ class System:
             ]
             edges = [taken[name] for name in writers]
             if all(edges):
-                new = {eval(edge.updates[variable], {}, values) for edge in edges if edge and variable in edge.updates}
+                new = {_value(edge.updates[variable], values) for edge in edges if edge and variable in edge.updates}
                 possible = possible and len(new) <= 1 and all(0 <= value <= last for value in new)
                 following[variable] = next(iter(new), values[variable])
         targets = (taken.get(automaton.name) for automaton in self.automata)
         locations = tuple(edge.target if edge else name for edge, name in zip(targets, state[0], strict=True))
         return possible, permitted, (locations, tuple(following.values()))
+
+
+def _grown(within: set[State], first: set[State], onwards: dict[State, set[State]]) -> set[State]:
+    """Return the states that the first ones reach without leaving a set."""
+    reached, pending = set(first), list(first)
+    while pending:
+        more = onwards.get(pending.pop(), set()) & within - reached
+        reached |= more
+        pending += more
+    return reached
+
+
+def _reversed(steps: dict[State, list[tuple[str, State]]]) -> dict[State, set[State]]:
+    sources: dict[State, set[State]] = {}
+    for state, following in steps.items():
+        for _, target in following:
+            sources.setdefault(target, set()).add(state)
+    return sources
+
+
+def _value(text: str, values: dict[str, int]) -> int:
+    """Return the value of an expression."""
+    return int(eval(text, {}, values))  # noqa: S307 - the texts are those of the tests
 
 
 def module(events: dict[str, bool], components: str, more: str = "") -> str:
