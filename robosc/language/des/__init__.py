@@ -43,10 +43,10 @@ def read(path: Path | str, documents: Documents | None = None) -> CifReading:
     system, texts = _system(path, documents or Documents())
     if has_errors(system.findings):
         return CifReading(None, in_order(system.findings), texts)
-    written = list(lines(system))
-    places = [place for _, place in written]
+    text_lines = list(lines(system))
+    places = [place for _, place in text_lines]
     own = path.with_suffix(".cif")
-    reading = read_cif(own, Documents({str(own): _joined(written)}))
+    reading = read_cif(own, Documents({str(own): _joined(text_lines)}))
     findings = list(system.findings)
     for finding in reading.findings:
         place = places[finding.span.line - 1]
@@ -75,8 +75,8 @@ def cif_of(model: sct.SupervisoryControlModel) -> str | None:
     return None if has_errors(system.findings) else _joined(lines(system))
 
 
-def _joined(written: Iterable[tuple[str, Place]]) -> str:
-    return "".join(f"{text}\n" for text, _ in written)
+def _joined(text_lines: Iterable[tuple[str, Place]]) -> str:
+    return "".join(f"{text}\n" for text, _ in text_lines)
 
 
 def _system(path: Path, documents: Documents) -> tuple[System, dict[str, str]]:

@@ -347,7 +347,7 @@ class _Module:
         graph = _child(component.node, "Graph", self._source)
         for child in _in_lists(graph, "LabelBlock"):
             automaton.alphabet |= dict.fromkeys(self._events(child, component))
-        written: dict[tuple[State, Event], list[tuple[int, Edge, dict[Variable, Value]]]] = {}
+        leaving: dict[tuple[State, Event], list[tuple[int, Edge, dict[Variable, Value]]]] = {}
         for node in (node for node in _in_lists(graph, "EdgeList") if node.name == "Edge"):
             with self._system.reporting():
                 sources, target = self._ends(node, graph, automaton)
@@ -358,8 +358,8 @@ class _Module:
                     raise construct(self._source.place(node), f"more than {_MOST_EDGES} edges", "use fewer")
                 for source, event in product(sources, dict.fromkeys(events)):
                     edge = Edge(source, event, target, self._source.place(node), list(guards))
-                    written.setdefault((source, event), []).append((len(sources), edge, writes))
-        for alternatives in written.values():
+                    leaving.setdefault((source, event), []).append((len(sources), edge, writes))
+        for alternatives in leaving.values():
             # The edges of an inner group, or of the state itself, take precedence over those of the groups around it.
             innermost = min(size for size, _, _ in alternatives)
             for size, edge, writes in alternatives:
@@ -460,7 +460,7 @@ class _Module:
     def _owners(self, components: list[_Component]) -> None:
         """Declare each variable in the one plant that writes it, or in an automaton of its own."""
         for component in components:
-            for name in self._written(component):
+            for name in self._targets(component):
                 if name in self._names.variables:
                     self._writers.setdefault(self._names.variables[name], {})[component] = None
         value = self._system.fresh("value", "v")
@@ -481,7 +481,7 @@ class _Module:
                 initial = variable.enumeration.literals[str(initial)]
             variable.owner.declarations.append((f"disc {kind} {identifier(variable.cif)} = {initial};", variable.place))
 
-    def _written(self, component: _Component) -> Iterator[str]:
+    def _targets(self, component: _Component) -> Iterator[str]:
         """Yield the names of the variables that an automaton's edges write."""
         for block in _below(component.node, "GuardActionBlock"):
             targets = [next(_operands(action), None) for action in _expressions(block, "Actions")]

@@ -290,11 +290,11 @@ class Names:
         named = self.automata.get(self.name(automaton, bindings))
         if named is None:
             return None
-        found = named.states.get(self.name(state, bindings))
-        if found is None:
+        position = named.states.get(self.name(state, bindings))
+        if position is None:
             message = f"`{named.name}` has no state `{self.name(state, bindings)}`"
             raise FaultError(self.source.place(state), "unresolved-reference", message)
-        return Value(f"{identifier(named.cif)}.{identifier(found.cif)}", None)
+        return Value(f"{identifier(named.cif)}.{identifier(position.cif)}", None)
 
     def _call(self, node: Element, bindings: Bindings) -> Value:
         name = attribute(node, "FunctionName", self.source).lstrip("\\")

@@ -92,7 +92,7 @@ def test_a_finding_shows_its_line(tmp_path: Path) -> None:
 @pytest.mark.parametrize("path", _FILES, ids=lambda path: path.name)
 @given(data=st.data())
 def test_damaged_files_have_findings_in_them(path: Path, data: st.DataObject) -> None:
-    """Whatever is cut out of a file, reading ends, and each finding is in a file of the system."""
+    """Reading ends, and each finding is in a file of the system."""
     content = path.read_text(encoding="utf-8")
     start = data.draw(st.integers(0, len(content)))
     end = data.draw(st.integers(start, min(len(content), start + 40)))
