@@ -99,7 +99,7 @@ class Automaton:
 
     def at(self, state: State) -> list[str]:
         """Return the condition that the automaton is in a state; empty if it has no other state."""
-        return [f"{identifier(self.cif)}.{identifier(state.cif)}"] if len(self.states) > 1 else []
+        return [f"{self.cif}.{state.cif}"] if len(self.states) > 1 else []
 
 
 class System:
@@ -117,13 +117,15 @@ class System:
         self._names: set[str] = set()
 
     def fresh(self, name: str, prefix: str) -> str:
-        """Return a free identifier for a name; `prefix` precedes a name that begins with a digit."""
+        """Return a free identifier that is no keyword; `prefix` precedes a name that begins with a digit."""
         return self._fresh(name, prefix, self._names)
 
     @staticmethod
     def _fresh(name: str, prefix: str, taken: set[str]) -> str:
         word = _NO_WORD.sub("_", name).strip("_") or prefix
-        fresh = Names(taken).fresh(word if word[0].isalpha() else prefix + word)
+        word = word if word[0].isalpha() else prefix + word
+        # CIF's tools do not accept every keyword with a dollar sign before it.
+        fresh = Names(taken).fresh(word if identifier(word) == word else f"{word}_")
         taken.add(fresh)
         return fresh
 

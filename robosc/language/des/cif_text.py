@@ -5,8 +5,6 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from robosc.language.cif.parsing import identifier
-
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
@@ -18,13 +16,13 @@ def lines(system: System) -> Iterator[tuple[str, Place]]:
     """Yield the lines of a system with their places. The states have their names in CIF."""
     for event in system.events.values():
         kind = "controllable" if event.controllable else "uncontrollable"
-        yield f"{kind} {identifier(event.cif)};", event.place
+        yield f"{kind} {event.cif};", event.place
     yield from system.enumerations
     for automaton in system.automata:
         yield "", automaton.place
         yield from _automaton(automaton)
     forbidden = [
-        (f"requirement invariant not {identifier(automaton.cif)}.{identifier(state.cif)};", state.place)
+        (f"requirement invariant not {automaton.cif}.{state.cif};", state.place)
         for automaton in system.automata
         for state in automaton.states.values()
         if state.forbidden
@@ -37,21 +35,21 @@ def lines(system: System) -> Iterator[tuple[str, Place]]:
 
 def _automaton(automaton: Automaton) -> Iterator[tuple[str, Place]]:
     kind = "requirement" if automaton.requirement else "plant"
-    yield f"{kind} {identifier(automaton.cif)}:", automaton.place
+    yield f"{kind} {automaton.cif}:", automaton.place
     if set(automaton.alphabet) - {edge.event for edge in automaton.edges}:
-        names = ", ".join(identifier(event.cif) for event in automaton.alphabet)
+        names = ", ".join(event.cif for event in automaton.alphabet)
         yield f"  alphabet {names};", automaton.place
     for text, place in automaton.declarations:
         yield f"  {text}", place
     # Inside an automaton, its variables and states need no qualifier.
-    own = re.compile(rf"(?<![\w.$]){re.escape(identifier(automaton.cif))}\.")
+    own = re.compile(rf"(?<![\w.$]){re.escape(automaton.cif)}\.")
     edges: dict[object, list[Edge]] = {}
     for edge in automaton.edges:
         edges.setdefault(edge.source, []).append(edge)
     for state in automaton.states.values():
         attributes = ["initial;"] * state.initial + ["marked;"] * state.marked
         colon = ":" if attributes or state in edges else ";"
-        yield f"  location {identifier(state.cif)}{colon}", state.place
+        yield f"  location {state.cif}{colon}", state.place
         if attributes:
             yield f"    {' '.join(attributes)}", state.place
         for edge in edges.get(state, ()):
@@ -62,5 +60,5 @@ def _automaton(automaton: Automaton) -> Iterator[tuple[str, Place]]:
 def _edge(edge: Edge) -> str:
     guard = f" when {', '.join(edge.guards)}" if edge.guards else ""
     updates = f" do {', '.join(edge.updates)}" if edge.updates else ""
-    target = f" goto {identifier(edge.target.cif)}" if edge.target is not edge.source else ""
-    return f"edge {identifier(edge.event.cif)}{guard}{updates}{target};"
+    target = f" goto {edge.target.cif}" if edge.target is not edge.source else ""
+    return f"edge {edge.event.cif}{guard}{updates}{target};"

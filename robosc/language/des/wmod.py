@@ -15,7 +15,6 @@ from math import prod
 from typing import TYPE_CHECKING, Any
 
 from robosc.base.diagnostics import Severity
-from robosc.language.cif.parsing import identifier
 from robosc.language.des.automata import Automaton, Edge, Event, FaultError, State, System, construct
 from robosc.language.des.files import attribute
 from robosc.language.des.wmod_expressions import EXPRESSIONS, Enumeration, Names, Value, Variable, compared, number
@@ -285,7 +284,7 @@ class _Module:
             enumeration = Enumeration(self._system.fresh(f"Values{index}", "E"), {})
             ordered = dict.fromkeys(atom for _, variable in known for atom in variable.atoms if atom in atoms)
             for atom in ordered:
-                enumeration.literals[atom] = identifier(self._system.fresh(atom, "v"))
+                enumeration.literals[atom] = self._system.fresh(atom, "v")
                 self._names.enumerations[atom] = enumeration
             names = ", ".join(enumeration.literals.values())
             place = next(variable.place for _, variable in known if variable.atoms and variable.atoms[0] in atoms)
@@ -479,7 +478,7 @@ class _Module:
             initial = variable.initial
             if variable.enumeration is not None:
                 initial = variable.enumeration.literals[str(initial)]
-            variable.owner.declarations.append((f"disc {kind} {identifier(variable.cif)} = {initial};", variable.place))
+            variable.owner.declarations.append((f"disc {kind} {variable.cif} = {initial};", variable.place))
 
     def _targets(self, component: _Component) -> Iterator[str]:
         """Yield the names of the variables that an automaton's edges write."""
@@ -508,7 +507,7 @@ class _Module:
                 for edge, writes in first.writes.items():
                     if variable in writes:
                         edge.guards += _fitting(variable, writes[variable])
-                        edge.updates.append(f"{identifier(variable.cif)} := {writes[variable].text}")
+                        edge.updates.append(f"{variable.cif} := {writes[variable].text}")
 
     def _joint(self, variable: Variable, components: list[_Component]) -> None:
         """Create the edges of a variable's own automaton: for each joint step of its writers, their value.
@@ -550,7 +549,7 @@ class _Module:
                 if values:
                     edge.guards += [compared(values[0], "=", other).text for other in values[1:]]
                     edge.guards += _fitting(variable, values[0])
-                    edge.updates.append(f"{identifier(variable.cif)} := {values[0].text}")
+                    edge.updates.append(f"{variable.cif} := {values[0].text}")
                 owner.edges.append(edge)
             if permissive:
                 otherwise = " and ".join(f"not ({premise})" for premise in premises)

@@ -6,7 +6,6 @@ import operator as operators
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
-from robosc.language.cif.parsing import identifier
 from robosc.language.des.automata import FaultError, construct
 from robosc.language.des.files import attribute
 
@@ -79,7 +78,7 @@ class Variable:
     def text(self) -> str:
         """The variable's absolute name in CIF."""
         assert self.owner is not None
-        return f"{identifier(self.owner.cif)}.{identifier(self.cif)}"
+        return f"{self.owner.cif}.{self.cif}"
 
 
 class Value(NamedTuple):
@@ -294,7 +293,7 @@ class Names:
         if position is None:
             message = f"`{named.name}` has no state `{self.name(state, bindings)}`"
             raise FaultError(self.source.place(state), "unresolved-reference", message)
-        return Value(f"{identifier(named.cif)}.{identifier(position.cif)}", None)
+        return Value(f"{named.cif}.{position.cif}", None)
 
     def _call(self, node: Element, bindings: Bindings) -> Value:
         name = attribute(node, "FunctionName", self.source).lstrip("\\")
