@@ -205,7 +205,8 @@ class _Generator:
             known = self._automaton.states[keys[0]] = State(keys[0], token.place)
             # A name without a number has the number of its position.
             keys = keys if number or name.isdecimal() else [name, str(len(self._automaton.states))]
-            self._states = dict.fromkeys(keys, known) | self._states
+            for key in keys:
+                self._states.setdefault(key, known)
         return known
 
     def _finish(self) -> None:

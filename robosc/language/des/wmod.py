@@ -60,6 +60,8 @@ class _Module:
         #: Elements of arrays of events, and the events of aliases, by name.
         self._groups: dict[str, list[str]] = {}
         self._propositions: set[str] = set()
+        #: Groups of states by name, of each graph that has edges or propositions of groups.
+        self._group_nodes: dict[Element, dict[str, Element]] = {}
         self._markings: list[tuple[Variable, Element, dict[str, Constant]]] = []
         self._writers: dict[Variable, dict[_Component, None]] = {}
         self._count = 0
@@ -240,13 +242,13 @@ class _Module:
 
     def _inside(self, name: str, graph: Element, automaton: Automaton) -> Iterator[State]:
         """Yield the state of this name, or the states in the group of this name."""
-        groups = {
-            child.attributes.get(("", "Name"), ""): child
-            for part in graph.children
-            if part.name == "NodeList"
-            for child in part.children
-            if child.name == "GroupNode"
-        }
+        if name in automaton.states:
+            yield automaton.states[name]
+            return
+        groups = self._group_nodes.get(graph)
+        if groups is None:
+            nodes = (node for node in _in_lists(graph, "NodeList") if node.name == "GroupNode")
+            groups = self._group_nodes[graph] = {node.attributes.get(("", "Name"), ""): node for node in nodes}
         pending, seen = [name], set[str]()
         while pending:
             here = pending.pop()

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 from hypothesis import HealthCheck, assume, given, settings
 
 from robosc.language.des import read
 from tests.language.des.test_random_systems import counted, systems
-from tests.language.des.writing import System
+
+if TYPE_CHECKING:
+    from tests.language.des.writing import System
 
 pytest.importorskip("faudes")
 _MODELS = Path(__file__).parent / "models"
