@@ -36,8 +36,12 @@ def _supervised(plants: list[Path], requirements: list[Path]) -> int:
     events = faudes.EventSet()
     for system in (plant, specification):
         events.InsertSet(system.Alphabet())
+    # The projection forgets the attributes of events that only a requirement has.
+    controllable = [system.ControllableEvents() for system in (plant, specification)]
     faudes.InvProject(plant, events)
     faudes.InvProject(specification, events)
+    for names in controllable:
+        plant.SetControllable(names)
     supervisor = faudes.System()
     faudes.SupCon(plant, specification, supervisor)
     return int(supervisor.Size())
