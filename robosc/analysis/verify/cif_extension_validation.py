@@ -34,13 +34,14 @@ PROPERTY = "cif-translation"
 TEXT = "the generated CIF"
 
 
-def validate_extension(model: sct.SupervisoryControlModel, text: str) -> Verdict:
+def validate_extension(model: sct.SupervisoryControlModel, text: str, own_text: str | None = None) -> Verdict:
     """Return whether `<model>.supervised.cif` allows the same as the supervisor of a model from CIF, without errors.
 
+    `own_text` is the specification that it imports, if the model was not read from CIF.
     Every event must be enabled in the same reachable states, lead to the same ones, and leave no range. Raises
     MemoryError if the decision diagrams take more than 4 GB.
     """
-    reading = read_supervised(model, text)
+    reading = read_supervised(model, text, own_text)
     if reading is None:
         return Verdict(PROPERTY, Outcome.SKIPPED, "", "the CIF that the model was read from cannot be read any more")
     if reading.model is None:

@@ -47,7 +47,7 @@ def validate_cif(model: sct.SupervisoryControlModel, files: Mapping[str, str]) -
     validates it. Raises MemoryError if the decision diagrams take more than 4 GB.
     """
     if is_from_cif(model):
-        return validate_extension(model, files[f"{model.name}.supervised.cif"])
+        return validate_extension(model, files[f"{model.name}.supervised.cif"], files.get(f"{model.name}.cif"))
     verdicts = (
         _validate(model, files[f"{model.name}.cif"], supervised=False),
         _validate(model, files[f"{model.name}.supervised.cif"], supervised=True),

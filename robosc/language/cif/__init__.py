@@ -63,16 +63,21 @@ def read(path: Path | str, documents: Documents | None = None, *, supervised: bo
     return CifReading(model, findings, files.texts)
 
 
-def read_supervised(model: sct.SupervisoryControlModel, text: str) -> CifReading | None:
+def read_supervised(model: sct.SupervisoryControlModel, text: str, own_text: str | None = None) -> CifReading | None:
     """Read a specification that imports the one of a model, as if its file were beside the model's file.
 
-    Returns None if the model's own specification is no longer readable.
+    `own_text` is the specification of a model that was not read from CIF. Returns None if the model's own specification
+    is no longer readable.
     """
     assert model.source is not None
     assert model.source.file is not None
     own = Path(model.source.file.path)
     beside = own.with_name(f"{model.name}.supervised.cif")
-    documents = Documents({str(beside): text})
+    texts = {str(beside): text}
+    if own_text is not None:
+        own = own.with_name(f"{model.name}.cif")
+        texts[str(own)] = own_text
+    documents = Documents(texts)
     try:
         documents.read(own)
     except OSError:

@@ -10,13 +10,15 @@ import re
 from typing import TYPE_CHECKING
 
 from robosc.base.diagnostics import Diagnostic, ModelError, Severity
+from robosc.base.files.suffixes import AUTOMATA
+from robosc.language.des import cif_of
 from robosc.m2m.sct_to_cif import transform
 from robosc.m2t.cif.extension import write_extension
 from robosc.m2t.cif.specification import Writer
 from robosc.model import expression as ex
 from robosc.model.places import place
 from robosc.model.reflection import tree
-from robosc.model.semantics.roles import is_from_cif
+from robosc.model.semantics.roles import is_from_cif, is_written_as
 
 if TYPE_CHECKING:
     from typing import Any
@@ -68,16 +70,17 @@ def _version_warning(required: sct.ReachabilityRequirement) -> Diagnostic:
 def generate(models: Models, _configuration: Configuration) -> dict[str, str]:
     """Return `<robot>.cif` and, if the model has a supervisor, `<robot>.supervised.cif`, from the sct model alone.
 
-    A model from CIF only gets the latter. It imports the specification from its place. Raises ModelError if
+    A model from CIF only gets the latter. It imports the specification from its place. A model from automata of another
+    tool gets both, unless it is a saved model without its file. Raises ModelError if
     `preconditions` reports an error.
     """
     name, supervisor = models.sct.name, models.sct.supervisor
     if is_from_cif(models.sct):
-        return (
-            {}
-            if supervisor is None
-            else {f"{name}.supervised.cif": write_extension(models.sct, supervisor, models.folder)}
-        )
+        own = cif_of(models.sct) if is_written_as(models.sct, *AUTOMATA) else None
+        files = {} if own is None else {f"{name}.cif": own}
+        if supervisor is not None:
+            files[f"{name}.supervised.cif"] = write_extension(models.sct, supervisor, models.folder)
+        return files
     lowered = transform(models.sct)
     writer = Writer(lowered)
     files = {f"{name}.cif": writer.write_plants()}

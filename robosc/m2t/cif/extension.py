@@ -11,12 +11,13 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from robosc.base.files.suffixes import AUTOMATA
 from robosc.m2t.cif.expressions import CifPrinter
 from robosc.m2t.cif.names import AbsoluteNames, escape_keyword
 from robosc.m2t.cif.specification import document, edge_text, fold_lines, join_by_commas
 from robosc.model.semantics.naming import Names
 from robosc.model.semantics.printing import conjunction
-from robosc.model.semantics.roles import event_name
+from robosc.model.semantics.roles import event_name, is_written_as
 from robosc.model.semantics.walks import copy_tree
 
 if TYPE_CHECKING:
@@ -40,6 +41,8 @@ def _imported(model: sct.SupervisoryControlModel, folder: Path | None) -> str:
     assert model.source is not None
     assert model.source.file is not None
     file = model.source.file
+    if is_written_as(model, *AUTOMATA):
+        return f"{model.name}.cif"
     if folder is not None and Path(file.path).is_file():  # A saved model does not contain the path of its text.
         with suppress(ValueError):  # The folder is on another drive.
             return Path(os.path.relpath(Path(file.path).resolve(), folder.resolve())).as_posix()

@@ -7,6 +7,7 @@ from functools import cached_property
 from math import prod
 from typing import TYPE_CHECKING
 
+from robosc.base.files.suffixes import AUTOMATA
 from robosc.model import expression as ex
 from robosc.model import sct
 from robosc.model.semantics.domains import domain
@@ -27,18 +28,23 @@ def plant_of(event: sct.Event) -> sct.Plant:
 
 
 def is_from_cif(model: sct.SupervisoryControlModel) -> bool:
-    """Return whether a model was read from CIF.
+    """Return whether a model was read from CIF, or from automata by way of CIF.
 
     Its events stand for no communication, or it may start in several states. A model without events is recognized by
     the name of its file.
     """
-    if model.initialPredicates or (model.source and model.source.file and model.source.file.name.endswith(".cif")):
+    if model.initialPredicates or is_written_as(model, ".cif", *AUTOMATA):
         return True
     return any(
         any(event.kind in (sct.EventKind.plain, sct.EventKind.input) for event in plant.events)
         or any(variable.initial is None for variable in plant.variables)
         for plant in model.plants
     )
+
+
+def is_written_as(model: sct.SupervisoryControlModel, *suffixes: str) -> bool:
+    """Return whether the name of a model's file ends with one of the suffixes."""
+    return bool(model.source and model.source.file and model.source.file.name.endswith(suffixes))
 
 
 def input_values(model: sct.SupervisoryControlModel) -> int:

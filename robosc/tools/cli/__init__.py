@@ -17,6 +17,7 @@ from robosc import __version__
 from robosc.base.diagnostics.visible import visible, visible_lines
 from robosc.base.files.reading import record_inputs
 from robosc.base.files.resources import locate
+from robosc.base.files.suffixes import MODELS
 from robosc.tools.cli import interruption
 
 if TYPE_CHECKING:
@@ -60,8 +61,6 @@ _GROUPS = {
     },
 }
 _COMMANDS = {name: summary for group in _GROUPS.values() for name, summary in group.items()}
-#: Suffixes of model files.
-_MODELS = (".rscd", ".cif", ".xmi")
 #: Commands whose module has another name: the module `report` collects findings.
 _MODULES = {"report": "safety_report"}
 
@@ -116,7 +115,7 @@ class _Commands(click.Group):
     ) -> tuple[str | None, click.Command | None, list[str]]:
         if args and args[0] not in _COMMANDS and not args[0].startswith("-"):
             close = get_close_matches(args[0], _COMMANDS, n=1)
-            meant = f"robosc check {args[0]}" if args[0].endswith(_MODELS) else close[0] if close else ""
+            meant = f"robosc check {args[0]}" if args[0].endswith(MODELS) else close[0] if close else ""
             hint = f" Did you mean '{meant}'?" if meant else ""
             raise click.UsageError(f"No such command '{args[0]}'.{hint}", ctx)
         return super().resolve_command(ctx, args)

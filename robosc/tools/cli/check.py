@@ -41,9 +41,9 @@ _ROUNDS = 10
 def command(models: Sequence[str], form: str, fix: bool, watch: bool, paths: Paths) -> None:
     """Read robots and libraries, resolve their names, and report violations of the rules of the language.
 
-    MODEL is a .rscd file, a .cif file, or an .xmi file of one of the metamodels. With --fix, the command first edits
-    .rscd files where a hint has exactly one edit (`write 0.0`), and then reports the remaining findings. Exit status: 0
-    no errors, 1 errors.
+    MODEL is a .rscd file, a .cif or .wmod file, or an .xmi file of one of the metamodels. With --fix, the command first
+    edits .rscd files where a hint has exactly one edit (`write 0.0`), and then reports the remaining findings. Exit
+    status: 0 no errors, 1 errors.
 
     \b
     Examples:

@@ -6,6 +6,7 @@ from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
 import robosc
+from robosc.base.files.suffixes import AUTOMATA
 from robosc.base.ros_types import RosTypes
 from robosc.language.checks import check
 from robosc.language.libraries import search_folders
@@ -57,6 +58,12 @@ def read(path: str, paths: Paths, report: Report) -> Root | None:
         specification = read_cif(path)
         root, findings = specification.model, specification.findings
         report.add(findings, specification.texts)
+    elif path.endswith(AUTOMATA):
+        from robosc.language.des import read as read_automata
+
+        specification = read_automata(path)
+        root, findings = specification.model, specification.findings
+        report.add(findings, specification.texts)
     else:
         reading = read_text(path, paths.libraries, interfaces)
         root, findings = reading.base, reading.findings
@@ -101,9 +108,10 @@ def read_models(path: str, paths: Paths, report: Report, *, cif: bool = False) -
 
     Ends the report if there are errors. Raises CallError for a library, and for CIF if the call does not support it.
     """
-    if path.endswith(".cif") and not cif:
+    if path.endswith((".cif", *AUTOMATA)) and not cif:
+        what = "CIF" if path.endswith(".cif") else "a file of automata"
         raise CallError(
-            f"{path} is CIF, which has no ROS graph and no control loop: `check`, `synthesize`, `explain`, `verify`,"
+            f"{path} is {what}, which has no ROS graph and no control loop: `check`, `synthesize`, `explain`, `verify`,"
             " `simulate`, `diagram` and `transform --to cif,supervisor,xmi` take it"
         )
     root = read(path, paths, report)

@@ -59,10 +59,10 @@ def command(
 ) -> None:
     """Simulate a supervised robot: step by step by hand, by a script, or at random.
 
-    MODEL is a .rscd file with a robot, a .cif file, or an .xmi file written by `transform --to xmi`. Without --script
-    and --random, the command reads commands from the terminal; `h` lists them. A line of a script is an event with its
-    data, a step of a scenario such as `error from lift because timeout`, or a line of an event log. Only the events in
-    the script happen, unless --loop runs the control loop between the lines.
+    MODEL is a .rscd file with a robot, a .cif or .wmod file, or an .xmi file written by `transform --to xmi`. Without
+    --script and --random, the command reads commands from the terminal; `h` lists them. A line of a script is an event
+    with its data, a step of a scenario such as `error from lift because timeout`, or a line of an event log. Only the
+    events in the script happen, unless --loop runs the control loop between the lines.
 
     \b
     Examples:

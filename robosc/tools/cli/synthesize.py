@@ -53,10 +53,10 @@ def command(
 ) -> None:
     """Synthesize the supervisor of a robot and print its states and guards.
 
-    MODEL is a .rscd file with a robot, a .cif file, or an .xmi file written by `transform --to xmi`. A guard is the
-    condition under which the supervisor allows an event that the robot itself can perform. Additions of synthesis,
-    which no requirement states, are shown separately. For each requirement, the output has the number of states in
-    which it restricts the robot; for `never` and `always`, the number of states that they forbid.
+    MODEL is a .rscd file with a robot, a .cif or .wmod file, or an .xmi file written by `transform --to xmi`. A guard
+    is the condition under which the supervisor allows an event that the robot itself can perform. Additions of
+    synthesis, which no requirement states, are shown separately. For each requirement, the output has the number of
+    states in which it restricts the robot; for `never` and `always`, the number of states that they forbid.
 
     --json lists all events, including those for outgoing data and those from the robot, and the cost of synthesis.
     Guards too long to read are omitted (`guard` is null), and `guard_nodes` is the size of the decision diagram.

@@ -52,9 +52,9 @@ def command(
 ) -> None:
     """Prove the properties of a supervised robot, or refute them with a shortest trace.
 
-    MODEL is a .rscd file with a robot, a .cif file, or an .xmi file written by `transform --to xmi`; the supervisor of
-    an .xmi file is used unchanged. The command analyzes the supervised system with its requirements, silent events and
-    control loop, and compares it with the generated C and CIF. docs/verify.md explains each property.
+    MODEL is a .rscd file with a robot, a .cif or .wmod file, or an .xmi file written by `transform --to xmi`; the
+    supervisor of an .xmi file is used unchanged. The command analyzes the supervised system with its requirements,
+    silent events and control loop, and compares it with the generated C and CIF. docs/verify.md explains each property.
 
     \b
     Examples:

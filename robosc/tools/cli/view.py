@@ -69,10 +69,10 @@ def command(
 ) -> None:
     """Show the decisions of a supervised robot in a browser: states, commands, and why they are forbidden.
 
-    MODEL is a .rscd file with a robot, a .cif file, or an .xmi file written by `transform --to xmi`. By default, the
-    robot is simulated: a click performs an event. --log and --trace show a recorded run, and you can continue from any
-    moment of it in simulation. --ros2 shows a running robot, from its node's reports on ~/state. With several models,
-    you select one on the page.
+    MODEL is a .rscd file with a robot, a .cif or .wmod file, or an .xmi file written by `transform --to xmi`. By
+    default, the robot is simulated: a click performs an event. --log and --trace show a recorded run, and you can
+    continue from any moment of it in simulation. --ros2 shows a running robot, from its node's reports on ~/state. With
+    several models, you select one on the page.
 
     \b
     Examples:

@@ -12,6 +12,7 @@ from typing import NamedTuple
 CONTROLLER_CHECK = "org.eclipse.escet.cif.controllercheck.ControllerCheckerApp"
 EXPLORER = "org.eclipse.escet.cif.explorer.app.ExplorerApplication"
 SYNTHESIS = "org.eclipse.escet.cif.datasynth.CifDataSynthesisApp"
+TO_SUPREMICA = "org.eclipse.escet.cif.cif2supremica.CifToSupremicaApp"
 TRANSFORMER = "org.eclipse.escet.cif.cif2cif.app.CifToCifApp"
 _EXPLORED = re.compile(r"Number of states in state space: ([\d,.\u00a0]+)\.\n.*: ([\d,.\u00a0]+)\.", re.DOTALL)
 _INPUT = re.compile(r"^(\s*)input ([^;]+?) (\$?\w+(?:, *\$?\w+)*);", re.MULTILINE)
