@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from robosc.base.diagnostics import Repair
-from robosc.language.cif.faults import CHANNELS, CifFaultError, construct, place_of
+from robosc.language.cif.faults import CifFaultError, construct, place_of
 from robosc.language.cif.parsing import identifier
 from robosc.language.syntax_messages import closest, offer_name
 from robosc.model import sct
@@ -48,7 +48,7 @@ class Declaration:
     outer: Any
     scope: Scope
     element: Any = None
-    #: Type of a variable.
+    #: Type of a variable or a channel.
     type: Any = None
     #: Fault for which a variable was not created.
     fault: Any = None
@@ -262,8 +262,6 @@ class Specification:
             case "Events":
                 for name in node.names:
                     scope.events.append(self._name(rule, name, node, scope))
-                if node.type is not None:
-                    raise construct(node, "channels", CHANNELS)
             case _ if rule in _LISTS:
                 for declaration in getattr(node, _LISTS[rule]):
                     self._name(rule, declaration, node, scope)

@@ -6,7 +6,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from robosc.language.cif.expressions import ExpressionReader, TypedNode, referenced_names
-from robosc.language.cif.faults import CHANNELS, CifFaultError, construct
+from robosc.language.cif.faults import CifFaultError, construct
 from robosc.language.cif.scopes import Argument, Declaration, Scope, Specification, plain
 from robosc.model import expression as ex
 from robosc.model import sct
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 _LARGEST, _LARGEST_IN_ALL = 20_000, 100_000
 #: Operands that synthesis does not support, and hints to replace them.
 _FOREIGN = {
-    "Received": ("channels", CHANNELS),
     "Time": ("time", "model the passing of time by events"),
     "Real": ("reals", "write whole numbers"),
     "String": ("strings", "write an enumeration"),
@@ -53,6 +52,8 @@ class Values:
         self._equations: dict[Scope, dict[str, list[tuple[sct.Location | None, Any]]]] = {}
         self._size = self._size_in_all = 0
         self._exhausted: CifFaultError | None = None
+        #: The value that `?` stands for in the updates of an edge that receives one.
+        self.received: TypedNode | None = None
 
     def typed(self, node: Any, scope: Scope) -> TypedNode:
         """Return the value of an expression in a scope. Raises CifFaultError."""
@@ -107,7 +108,16 @@ class Values:
                 if scope.plant is None:
                     raise CifFaultError(node, "type", "`self` is allowed only in automata")
                 return TypedNode(node, None, scope.plant)
+            case "Received":
+                return self._received(node)
         raise construct(node, *_FOREIGN[type(node).__name__])
+
+    def _received(self, node: Any) -> TypedNode:
+        if self.received is None:
+            message = "`?` has a value only in the updates of an edge that receives one"
+            raise CifFaultError(node, "type", message)
+        self._grow(node, sum(1 for _ in parts(self.received.expression)))
+        return TypedNode(node, copy_tree(self.received.expression), self.received.type)
 
     def _call(self, node: Any, scope: Scope) -> TypedNode:
         name = node.function.strip()
@@ -391,3 +401,10 @@ def literal(value: Any) -> ex.Expression:
         return ex.EnumerationLiteralReference(literal=value)
     whole = ex.IntegerLiteral(value=abs(int(value)))
     return ex.UnaryMinus(operand=whole) if value < 0 else whole
+
+
+def default(kind: Type) -> Any:
+    """Return CIF's default value of a type."""
+    if isinstance(kind, range):
+        return min(max(0, kind.start), kind.stop - 1)
+    return kind.literals[0] if isinstance(kind, ex.Enumeration) else False
