@@ -4,8 +4,8 @@ An event of the sct metamodel has no sender and no receiver. A channel with one 
 of both. The received value becomes the sent one, by its place if the sender sends several. If a channel has several
 senders or receivers, then:
 
-- A controllable channel stays one event, because CIF permits only one pair in a state. Each sender may stay where another
-  one sends. If two can send, their edges overlap, which synthesis rejects. The same applies to receivers.
+- A controllable channel stays one event, because CIF permits only one pair in a state. Each sender may stay where
+  another one sends. If two can send, their edges overlap, which synthesis rejects. The same applies to receivers.
 - An uncontrollable channel becomes one event for each pair, because the system chooses the pair. A sender with several
   values in a location also has one event for each of them.
 
@@ -18,9 +18,8 @@ from dataclasses import dataclass, replace
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
-from robosc.language.cif.expressions import TypedNode
 from robosc.language.cif.faults import CifFaultError, construct
-from robosc.language.cif.values import default, literal
+from robosc.language.cif.static_values import TypedNode, default, literal
 from robosc.model import expression as ex
 from robosc.model import sct
 from robosc.model.semantics.cif_types import LARGEST, Type, contains, format_type, join_types
@@ -139,9 +138,7 @@ class Channels:
             for scope, own in edges.items()
         }
 
-    def _communications(
-        self, declared: Declaration, edges: dict[Scope, list[EventEdge]]
-    ) -> Iterator[_Communication]:
+    def _communications(self, declared: Declaration, edges: dict[Scope, list[EventEdge]]) -> Iterator[_Communication]:
         """Yield the events of a channel; report automata that use it in several ways."""
         channel: sct.Event = declared.element
         users: dict[str, dict[Scope, list[EventEdge]]] = {"!": {}, "?": {}, "": {}}
@@ -204,7 +201,9 @@ def _alternatives(edges: list[EventEdge]) -> list[list[EventEdge]]:
     """Divide the edges of a sender so that each part sends one value in a location."""
     parts: list[list[EventEdge]] = []
     for edge in edges:
-        free = (part for part in parts if edge.sent is None or all(other.location is not edge.location for other in part))
+        free = (
+            part for part in parts if edge.sent is None or all(other.location is not edge.location for other in part)
+        )
         part = next(free, None)
         if part is None:
             parts.append(part := [])

@@ -221,7 +221,7 @@ class Specification:
                 return name.named
             value = name.node.first.value
             is_name = not name.node.others and not name.node.first.openings and not name.node.first.closings
-            if not is_name or type(value).__name__ != "Reference" or value.suffix:
+            if not is_name or type(value).__name__ != "Reference" or value.suffixes:
                 raise CifFaultError(name.node, "type", "the parameter expects a name")
             name = self.find(value.name, name.scope)
         return name
@@ -248,7 +248,7 @@ class Specification:
             case "Continuous":
                 raise construct(node, "continuous variables", "use them only in simulation, or model time by events")
             case "Function":
-                raise construct(node, "functions", "write an algebraic variable for its result")
+                self._name(rule, node, node, scope)
             case _:
                 self._declare_names(scope, node, rule)
 

@@ -24,11 +24,12 @@ from robosc.language.cif.faults import (
 )
 from robosc.language.cif.parsing import identifier
 from robosc.language.cif.scopes import Declaration, Scope, Specification, plain
-from robosc.language.cif.values import Values, computed_from_itself, constant_value, default, literal
+from robosc.language.cif.static_values import constant_value, default, literal
+from robosc.language.cif.values import Values, computed_from_itself
 from robosc.language.syntax_messages import closest, offer_name
 from robosc.model import expression as ex
 from robosc.model import sct
-from robosc.model.semantics.cif_types import Type, contains, format_type, overlap
+from robosc.model.semantics.cif_types import Type, compatible, contains, format_type, overlap
 from robosc.model.semantics.domains import domain
 from robosc.model.semantics.edges import edges_by_event
 from robosc.model.semantics.naming import Names
@@ -38,7 +39,7 @@ from robosc.model.semantics.walks import copy_tree
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from robosc.language.cif.expressions import TypedNode
+    from robosc.language.cif.static_values import TypedNode
 
 
 def to_sct(names: Specification, name: str, *, supervised: bool = False) -> sct.SupervisoryControlModel:
@@ -118,7 +119,7 @@ class _CifToSct:
         """Set the type of an event that is a channel."""
         kind = declared.outer.type
         if kind is not None:
-            declared.type = VOID if kind.type is None else self._values.declared_type(kind.type, scope)
+            declared.type = VOID if kind.type is None else self._values.synthesized_type(kind.type, scope)
 
     def _plant(self, scope: Scope) -> sct.Plant:
         """Return the plant of a scope; a group has one if it declares events or inputs."""
@@ -128,7 +129,7 @@ class _CifToSct:
         return scope.plant
 
     def _variable(self, declared: Declaration, scope: Scope) -> None:
-        declared.type = self._values.declared_type(declared.outer.type, scope)
+        declared.type = self._values.synthesized_type(declared.outer.type, scope)
         if declared.type == "int":
             raise construct(declared.outer.type, "an int without range", "write `int[lowest..highest]`")
         plant = self._plant(scope)
@@ -188,7 +189,7 @@ class _CifToSct:
         for declared in scope.names.values():
             with self._names.reporting():
                 if isinstance(declared, Declaration) and declared.kind in ("Constants", "Algebraics"):
-                    self._values.known(declared)
+                    self._define(declared)
                 elif (
                     isinstance(declared, Declaration) and declared.kind == "Variables" and declared.element is not None
                 ):
@@ -205,6 +206,14 @@ class _CifToSct:
         if _is_automaton(scope) and not initial:
             message = f"`{scope.path}` has no initial location"
             raise CifFaultError(scope.node, "initial-state", message, "write `initial;` in one location")
+
+    def _define(self, declared: Declaration) -> None:
+        """Read a constant or an algebraic variable. Outside of synthesis, a variable may have any value."""
+        try:
+            self._values.known(declared)
+        except CifFaultError as fault:
+            if declared.kind == "Constants" or fault.rule != "cif-construct":
+                raise
 
     def _edges_of(self, taken: list[EventEdge], scope: Scope) -> None:
         """Create the edges and the requirements of an automaton."""
@@ -307,7 +316,9 @@ class _CifToSct:
             message = f"`{node.variable.text}` is assigned by `{declared.scope.path}` only, which declares it"
             raise CifFaultError(node, "assignment-scope", message)
         value = self._values.whole(node.value, scope)
-        if not overlap(declared.type, value.type):
+        # The type of a received value is that of the channel; the sent value may be out of the variable's range.
+        fits = compatible if self._values.received is not None else overlap
+        if not fits(declared.type, value.type):
             message = f"`{declared.name}` is {format_type(declared.type)}, the assigned value {format_type(value.type)}"
             raise CifFaultError(node, "type", message)
         return declared.element, value.expression, value.type
@@ -507,8 +518,8 @@ class _CifToSct:
         if here is not None:
             combine = ex.Implication if needs else ex.Conjunction
             condition = combine(left=here, right=condition)
-        events = [self._event(name, scope) for name in restriction.events]
-        for event in (divided for event in events for divided in self._channels.events_of(event)):
+        named = (self._event(name, scope) for name in restriction.events)
+        for event in [divided for whole in named for divided in self._channels.events_of(whole)]:
             if plant:
                 own = copy_tree(condition)
                 self._exclusions.setdefault(event, []).append((node, own if needs else ex.Negation(operand=own)))
