@@ -305,7 +305,7 @@ class _CifToSct:
     def _update(self, node: Any, scope: Scope) -> tuple[sct.DiscreteVariable, ex.Expression, Type]:
         if node.conditional:
             raise construct(node, "conditional updates", CONDITIONAL_UPDATES)
-        if node.several or node.projection:
+        if node.several or node.projections:
             raise construct(node, "updates of tuples and lists", "write a variable for each element")
         declared = self._names.find(node.variable, scope)
         if not isinstance(declared, Declaration) or declared.kind != "Variables":

@@ -107,7 +107,7 @@ class Automaton:
 
 
 TRUE = Term("true", lambda _: True)
-_CONSTANTS: dict[Any, list[str]] = {2: ["two", "two", "floor(2.5)", "round(halves[0])", "size({1, 2, 2})"]}
+_CONSTANTS: dict[Any, list[str]] = {2: ["two", "floored", "rounded", "sized"]}
 _NARROW: list[tuple[str, Callable[[int, int], int]]] = [
     ("({} + {})", lambda a, b: a + b),
     ("(({} + {}) mod 3)", lambda a, b: (a + b) % 3),
@@ -246,7 +246,7 @@ class Specification:
         for name, (_, values, _, _) in automaton.variables.items():
             if type(values[0]) is type(received[0]) and some.random() < 0.8:
                 value = Term("?", lambda s: s["?"])
-                if isinstance(values[0], bool) or isinstance(values[0], str) or some.random() < 0.5:
+                if isinstance(values[0], bool | str) or some.random() < 0.5:
                     yield f"{automaton.name}.{name}", value
                 else:
                     other = self.term(values, 0)
@@ -581,6 +581,7 @@ class Specification:
     def _names(self) -> list[str]:
         lines = [
             "const list real halves = [1.5, 0.5];",
+            "const int floored = floor(2.5), rounded = round(halves[0]), sized = size({1, 2, 2});",
             "const int two = 2;",
             "const bool yes = true;",
             "enum E = e0, e1, e2;",
@@ -834,8 +835,8 @@ class Specification:
             if used and self._allowed("plant", event, state):
                 for taken in self._taken(event, state):
                     after = dict(state)
-                    before = dict(state)
-                    before.update({"?": edge.sent[event].value(state) for _, edge in taken if event in edge.sent})
+                    sent = [edge.sent[event].value(state) for _, edge in taken if event in edge.sent]
+                    before = {**state, "?": sent[0]} if sent else state
                     for automaton, edge in taken:
                         after[automaton.name] = edge.target
                         after.update({name: value.value(before) for name, value in edge.updates})

@@ -169,7 +169,7 @@ COUNTS = {
         "controllable int[0..9] c; controllable e;\n"
         "plant s: disc int[0..9] n; location: initial; marked; edge c!n; edge e when n < 9 do n := n + 1; end\n"
         "plant r: disc int[0..3] v; location: initial; marked; edge c? do v := ?; end\n"
-        "plant m: monitor c; location: initial; marked; end",
+        "plant m: alphabet c; monitor c; location: initial; marked; end",
         34,
     ),
     "several senders and receivers of a controllable channel": (
