@@ -107,7 +107,7 @@ class Automaton:
 
 
 TRUE = Term("true", lambda _: True)
-_CONSTANTS: dict[Any, list[str]] = {2: ["two", "floored", "rounded", "sized"]}
+_CONSTANTS: dict[Any, list[str]] = {2: ["two", "two", 'known["b"]', "both[n]", "size(halves)"]}
 _NARROW: list[tuple[str, Callable[[int, int], int]]] = [
     ("({} + {})", lambda a, b: a + b),
     ("(({} + {}) mod 3)", lambda a, b: (a + b) % 3),
@@ -580,10 +580,11 @@ class Specification:
 
     def _names(self) -> list[str]:
         lines = [
-            "const list real halves = [1.5, 0.5];",
-            "const int floored = floor(2.5), rounded = round(halves[0]), sized = size({1, 2, 2});",
+            "const list[2] real halves = [1.5, 0.5];",
+            'const dict(string: int[0..2]) known = {"a": 1, "b": 2};',
+            "const tuple(int[0..2] n; bool b) both = (2, true);",
             "const int two = 2;",
-            "const bool yes = true;",
+            "const bool yes = both[b] and floor(2.5) = two and round(halves[0]) = two and 2 in {1, 2};",
             "enum E = e0, e1, e2;",
             "type T = int[0..two];",
         ]
