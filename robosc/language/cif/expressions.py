@@ -195,7 +195,7 @@ class ExpressionReader:
     def _choice(top: _Open, otherwise: TypedNode) -> TypedNode:
         if any(is_foreign(value.type) for value in (*top.values, otherwise)):
             for condition, value in zip(top.conditions, top.values, strict=False):
-                if static_value(condition, "conditions of such values"):
+                if static_value(condition, "conditions between values of these types"):
                     return value
             return otherwise
         expression, kind = otherwise.expression, otherwise.type

@@ -165,7 +165,7 @@ def refuse_changing(typed: TypedNode, what: str = "") -> NoReturn:
     """Raise CifFaultError: an expression that depends on the state has a type that synthesis does not have."""
     hint = "write constants and whole numbers, or an algebraic variable of type bool, int or an enumeration"
     raise construct(
-        typed.node, f"{what or _PLURALS.get(str(typed.type), 'such values')} that depend on the state", hint
+        typed.node, f"{what or _PLURALS.get(str(typed.type), 'values of this type')} that depend on the state", hint
     )
 
 
@@ -386,8 +386,8 @@ def collection(node: Any, elements: Sequence[TypedNode | tuple[TypedNode, TypedN
     if len(kinds) > 1:
         raise CifFaultError(node, "type", f"the elements are {kinds[0]} and {kinds[1]}")
     if pairs:
-        found = Pairs((static_value(key, named), static_value(value, named)) for key, value in pairs)
-        return static_node(node, found)
+        dictionary = Pairs((static_value(key, named), static_value(value, named)) for key, value in pairs)
+        return static_node(node, dictionary)
     return static_node(node, tuple(values) if is_list else frozenset(values))
 
 

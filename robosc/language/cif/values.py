@@ -153,8 +153,8 @@ class Values:
                 raise construct(node, what, "write an algebraic variable for its result")
             bounds = None if suffix.first is None else pair(suffix.first)
             if suffix.slice or bounds is not None:
-                given = bounds or (suffix.first, suffix.last)
-                ends = [None if bound is None else self._nested(bound, scope) for bound in given]
+                limits = bounds or (suffix.first, suffix.last)
+                ends = [None if bound is None else self._nested(bound, scope) for bound in limits]
                 typed = static_values.sliced(suffix, typed, ends)
                 continue
             if suffix.first is None:

@@ -400,7 +400,7 @@ OUTSIDE = [
     ("{disc dist bool x;}", "the type `dist`", _TYPES),
     ("{} requirement 1.5 + <real>p.a > 1;", "casts of values that depend on the state", _STATIC),
     ("{disc int[0..2] x;} requirement p.x > 1.5;", "reals that depend on the state", _STATIC),
-    ('{} requirement (if p.a: "a" else "b" end) = "b";', "conditions of such values", _STATIC),
+    ('{} requirement (if p.a: "a" else "b" end) = "b";', "conditions between values of these types", _STATIC),
     ("{disc int[0..2] x;} requirement p.x in [1];", "lists that depend on the state", _STATIC),
     ("{disc int[0..2] x;} requirement [1, 2][p.x] = 1;", "elements of lists and tuples", _STATIC),
     ("{disc int[0..2] x;} requirement p.x / 2 = 1.0;", "operands of `/` that depend on the state", _STATIC),
