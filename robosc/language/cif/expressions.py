@@ -81,6 +81,8 @@ class ExpressionReader:
         if word in ("if", "switch", *_UNARY):
             self._open.append(_Open(word, token))
             return
+        if word.startswith("first ") and (not self._open or self._open[-1].word != "switch:"):
+            raise CifFaultError(token, "syntax", f"`{token.token}` is not allowed here")
         level = _LEVELS.get(word, 0)
         self._reduce(level)
         top = self._open[-1] if self._open else _Open("", token)

@@ -24,6 +24,8 @@ from robosc.model.semantics.evaluation import evaluate
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+#: Maximum number of elements and characters of a static value.
+_LARGEST = 10_000
 _COMPARISONS = {"<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge}
 _ARITHMETIC = {"+": operator.add, "-": operator.sub, "*": operator.mul}
 _ON_SETS = {"and": operator.and_, "or": operator.or_, "-": operator.sub, "sub": operator.le}
@@ -147,6 +149,9 @@ def static_node(node: Any, value: Any) -> TypedNode:
         if not math.isfinite(value):
             raise CifFaultError(node, "type", "the value of this is no real number")
         value += 0.0  # There is no negative zero.
+    if _size(value) > _LARGEST:
+        message = f"the value of this has more than {_LARGEST} elements and characters"
+        raise CifFaultError(node, "cif-construct", message, "split it into smaller constants")
     return TypedNode(node, Static(value), _kind(value))
 
 
@@ -435,6 +440,20 @@ def _conform_parts(value: Any, kind: ForeignType) -> Any:
             keys, elements = kind.parts
             return Pairs((_conform(key, keys), _conform(element, elements)) for key, element in value.items())
     return value
+
+
+def _size(value: Any) -> int:
+    """Return the number of elements and characters of a value, those of its parts included."""
+    match value:
+        case str():
+            return len(value)
+        case Tuple():
+            return _size(value.values)
+        case Pairs():
+            return len(value) + sum(map(_size, value)) + sum(map(_size, value.values()))
+        case tuple() | frozenset():
+            return len(value) + sum(map(_size, value))
+    return 1
 
 
 def _kind(value: Any) -> str:

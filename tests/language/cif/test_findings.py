@@ -101,6 +101,17 @@ WRONG = {
         + "plant q: disc bool b; location: initial; edge c? do b := ?; end",
         [("3:53", None)],
     ),
+    "an operator before `else`": (
+        "controllable c;\n" + _P.replace("edge c", "edge c when if true: true and else false end"),
+        [("2:69", None)],
+    ),
+    "a static value that is too large": (
+        "controllable c; const list int l0 = [1];"
+        + "".join(f"const list int l{number + 1} = l{number} + l{number};" for number in range(40))
+        + "\n"
+        + _P.replace("edge c", "edge c when l40 = l39"),
+        [("1:409", "split it into smaller constants")],
+    ),
     "values that have no type of synthesis": (
         "controllable c; const real r = true; const list[2] int l = [1]; const int n = [1][2];\n"
         + _P.replace("edge c", "edge c when r + 1"),
