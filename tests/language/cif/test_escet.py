@@ -16,7 +16,8 @@ from robosc.language.configuration import Configuration
 from robosc.m2t import cif
 from robosc.model import expression as ex
 from robosc.model.semantics.roles import input_values
-from robosc.synthesis import count, synthesize
+from robosc.synthesis import count as count_states
+from robosc.synthesis import synthesize
 from robosc.tools.cli import main
 from tests.fuzz.valid import checked
 from tests.language.cif.comparing import reading_of
@@ -312,7 +313,7 @@ def test_cifs_own_specifications_have_as_many_states(tools: Tools, copied: Path,
             assert {finding.rule for finding in reading.findings} == {"initial-state"}, path
             continue
         # CIF's tool computes the number as a floating-point number.
-        assert float(count(reading.model).controlled_states) == pytest.approx(theirs.states, rel=1e-14), path
+        assert float(count_states(reading.model).controlled_states) == pytest.approx(theirs.states, rel=1e-14), path
         compared += 1
     assert compared > 10
 
