@@ -3,7 +3,8 @@
     reading = read("model.cif")
 
 `parsing` turns a text into objects of the grammar (grammar/cif.tx). `scopes` resolves names and creates the instances
-of definitions. `values` and `expressions` read expressions. `to_sct` creates the sct model.
+of definitions. `values` and `expressions` read expressions, `static_values` evaluates those of other types. `to_sct`
+creates the sct model, and `channels` its events with senders and receivers.
 """
 
 from __future__ import annotations

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
-from robosc.language.cif.faults import CifFaultError, construct
+from robosc.language.cif import static_values
+from robosc.language.cif.faults import CifFaultError, construct, span
+from robosc.language.cif.static_values import TypedNode, constant_value, is_foreign, static_value
 from robosc.model import expression as ex
 from robosc.model import sct
 from robosc.model.semantics.cif_types import (
     BOOLEAN,
     FOREIGN,
     OPERATORS,
-    Type,
     combine_types,
     format_type,
     join_types,
@@ -24,21 +25,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 #: Words before an operand that bind like unary operators.
-_UNARY = ("not", "negate", "plus")
+_UNARY = ("not", "negate", "plus", "cast")
 #: Words before an operand that are operators if another operand precedes them.
 _OPENINGS = {"-": "negate", "+": "plus", "case": "first case", "else": "first else"}
 _LEVELS = {word: level for word, (level, _) in OPERATORS.items()} | FOREIGN
-
-
-class TypedNode(NamedTuple):
-    """An expression with its type and the object of the grammar from which it was created.
-
-    The type of an automaton is its plant; an automaton has a value only in a `switch`.
-    """
-
-    node: Any
-    expression: Any
-    type: Type | Any
 
 
 @dataclass
@@ -86,18 +76,17 @@ class ExpressionReader:
 
     def _take(self, word: str, token: Any) -> None:
         """Process a token that is not an operand."""
-        if word == "sample" or (word[0] + word[-1] == "<>" and word not in _LEVELS):
-            what = "distributions" if word == "sample" else "casts"
-            raise construct(token, what, "write a value of the required type")
+        if word == "sample":
+            raise construct(token, "distributions", "write a value of the required type")
         if word in ("if", "switch", *_UNARY):
             self._open.append(_Open(word, token))
             return
+        if word.startswith("first ") and (not self._open or self._open[-1].word != "switch:"):
+            raise CifFaultError(token, "syntax", f"`{token.token}` is not allowed here")
         level = _LEVELS.get(word, 0)
         self._reduce(level)
         top = self._open[-1] if self._open else _Open("", token)
         if level:
-            if word in FOREIGN:
-                raise CifFaultError(token, "cif-construct", f"synthesis does not take the operator `{word}`")
             if level == 1 and _LEVELS.get(top.word) == 1:
                 raise CifFaultError(
                     token, "syntax", f"`{word}` and `{top.word}` cannot be chained", "write parentheses"
@@ -157,7 +146,14 @@ class ExpressionReader:
         for operand in (left, right):
             if isinstance(operand.type, sct.Plant):
                 raise CifFaultError(operand.node, "type", "an automaton is not a value", "name one of its locations")
-        kind = _checked(top.node, combine_types, top.word, left.type, right.type)
+        if top.word in FOREIGN or is_foreign(left.type) or is_foreign(right.type):
+            return static_values.binary(top.node, top.word, left, right)
+        try:
+            kind = combine_types(top.word, left.type, right.type)
+        except TypeError as fault:
+            if all(constant_value(operand.expression) is not None for operand in (left, right)):
+                return static_values.binary(top.node, top.word, left, right)
+            raise CifFaultError(top.node, "type", str(fault)) from None
         if top.word == "mod":
             arguments = [left.expression, right.expression]
             return TypedNode(top.node, ex.FunctionCall(function="mod", arguments=arguments), kind)
@@ -168,6 +164,10 @@ class ExpressionReader:
         if top.word == "not":
             self._boolean(operand, "`not` does not apply to {}")
             return TypedNode(top.node, ex.Negation(operand=operand.expression), BOOLEAN)
+        if top.word == "cast":
+            return static_values.cast(top.node, operand)
+        if operand.type == "real":
+            return operand if top.word == "plus" else static_values.negated(top.node, operand)
         if not isinstance(operand.type, range):
             raise CifFaultError(top.node, "type", f"a sign does not apply to {format_type(operand.type)}")
         if top.word == "plus":
@@ -181,6 +181,8 @@ class ExpressionReader:
         """Return the condition that the value of a `switch` equals a key."""
         if isinstance(switched.type, sct.Plant):
             return key  # The key is a location, which is true while the automaton is in it.
+        if is_foreign(switched.type) or is_foreign(key.type):
+            return static_values.binary(key.node, "=", switched, key)
         _checked(key.node, combine_types, "=", switched.type, key.type)
         self._grow(key.node, sum(1 for _ in parts(switched.expression)))
         return TypedNode(key.node, ex.Equation(left=copy_tree(switched.expression), right=key.expression), BOOLEAN)
@@ -193,6 +195,11 @@ class ExpressionReader:
 
     @staticmethod
     def _choice(top: _Open, otherwise: TypedNode) -> TypedNode:
+        if any(is_foreign(value.type) for value in (*top.values, otherwise)):
+            for condition, value in zip(top.conditions, top.values, strict=False):
+                if static_value(condition, "conditions between values of these types"):
+                    return value
+            return otherwise
         expression, kind = otherwise.expression, otherwise.type
         for condition, value in reversed(list(zip(top.conditions, top.values, strict=True))):
             kind = _checked(top.node, join_types, value.type, kind)
@@ -207,9 +214,33 @@ def _tokens(node: Any) -> Iterator[tuple[str | None, Any]]:
         if operator is not None:
             yield operator.token, operator
         for opening in operand.openings:
-            yield _OPENINGS.get(opening.token, opening.token), opening
+            word = opening.token
+            yield _OPENINGS.get(word, "cast" if word[0] == "<" else word), opening
         yield None, operand.value
         yield from ((closing.token, closing) for closing in operand.closings)
+
+
+class _Part:
+    """A part of a flat expression."""
+
+    def __init__(self, node: Any, first: Any, others: list[Any]) -> None:
+        self.parent = node
+        self.first = first
+        self.others = others
+        self._tx_position = span(first)[0]
+        self._tx_position_end = span(others[-1] if others else first)[1]
+
+
+def pair(node: Any) -> tuple[Any, Any] | None:
+    """Return the two expressions around a `:` outside of any `if` and `switch`, or None if there is no such `:`."""
+    depth = 0
+    operands = [node.first, *(other.operand for other in node.others)]
+    words = ["", *(other.operator.token for other in node.others)]
+    for number, (word, operand) in enumerate(zip(words, operands, strict=True)):
+        if word == ":" and depth == 0:
+            return _Part(node, node.first, node.others[: number - 1]), _Part(node, operand, node.others[number:])
+        depth += sum(opening.token in ("if", "switch") for opening in operand.openings) - len(operand.closings)
+    return None
 
 
 def referenced_names(node: Any) -> Iterator[Any]:
@@ -219,11 +250,15 @@ def referenced_names(node: Any) -> Iterator[Any]:
         here = pending.pop()
         for operand in (here.first, *(other.operand for other in here.others)):
             value = operand.value
+            for suffix in getattr(value, "suffixes", ()):
+                pending += [bound for bound in (getattr(suffix, "first", None), getattr(suffix, "last", None)) if bound]
             match type(value).__name__:
                 case "Parenthesis":
-                    pending.append(value.inner)
+                    pending += [value.inner, *value.more]
                 case "Call":
                     pending += value.arguments
+                case "Collection":
+                    pending += value.elements
                 case "Reference" if "case" not in {opening.token for opening in operand.openings[-1:]}:
                     yield value.name
 

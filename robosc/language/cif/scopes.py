@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from robosc.base.diagnostics import Repair
-from robosc.language.cif.faults import CHANNELS, CifFaultError, construct, place_of
+from robosc.language.cif.faults import CifFaultError, construct, place_of
 from robosc.language.cif.parsing import identifier
 from robosc.language.syntax_messages import closest, offer_name
 from robosc.model import sct
@@ -48,7 +48,7 @@ class Declaration:
     outer: Any
     scope: Scope
     element: Any = None
-    #: Type of a variable.
+    #: Type of a variable or a channel.
     type: Any = None
     #: Fault for which a variable was not created.
     fault: Any = None
@@ -221,7 +221,7 @@ class Specification:
                 return name.named
             value = name.node.first.value
             is_name = not name.node.others and not name.node.first.openings and not name.node.first.closings
-            if not is_name or type(value).__name__ != "Reference" or value.suffix:
+            if not is_name or type(value).__name__ != "Reference" or value.suffixes:
                 raise CifFaultError(name.node, "type", "the parameter expects a name")
             name = self.find(value.name, name.scope)
         return name
@@ -248,7 +248,7 @@ class Specification:
             case "Continuous":
                 raise construct(node, "continuous variables", "use them only in simulation, or model time by events")
             case "Function":
-                raise construct(node, "functions", "write an algebraic variable for its result")
+                self._name(rule, node, node, scope)
             case _:
                 self._declare_names(scope, node, rule)
 
@@ -262,8 +262,6 @@ class Specification:
             case "Events":
                 for name in node.names:
                     scope.events.append(self._name(rule, name, node, scope))
-                if node.type is not None:
-                    raise construct(node, "channels", CHANNELS)
             case _ if rule in _LISTS:
                 for declaration in getattr(node, _LISTS[rule]):
                     self._name(rule, declaration, node, scope)

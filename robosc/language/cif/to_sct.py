@@ -8,12 +8,11 @@ variable to which an uncontrollable event assigns any value.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from robosc.language.cif import plant_invariants
+from robosc.language.cif.channels import VOID, Channels, EventEdge, at, sent_value
 from robosc.language.cif.faults import (
-    CHANNELS,
     CONDITIONAL_UPDATES,
     SUPERVISORS,
     TAU,
@@ -25,11 +24,12 @@ from robosc.language.cif.faults import (
 )
 from robosc.language.cif.parsing import identifier
 from robosc.language.cif.scopes import Declaration, Scope, Specification, plain
-from robosc.language.cif.values import Values, computed_from_itself, constant_value, literal
+from robosc.language.cif.static_values import constant_value, default, literal
+from robosc.language.cif.values import Values, computed_from_itself
 from robosc.language.syntax_messages import closest, offer_name
 from robosc.model import expression as ex
 from robosc.model import sct
-from robosc.model.semantics.cif_types import Type, contains, format_type, overlap
+from robosc.model.semantics.cif_types import Type, compatible, contains, format_type, overlap
 from robosc.model.semantics.domains import domain
 from robosc.model.semantics.edges import edges_by_event
 from robosc.model.semantics.naming import Names
@@ -39,21 +39,7 @@ from robosc.model.semantics.walks import copy_tree
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-
-@dataclass
-class _EventEdge:
-    """An edge of the text for one of its events.
-
-    `fits` has the condition under which each variable stays in range.
-    """
-
-    location: sct.Location
-    event: sct.Event
-    guard: ex.Expression | None
-    fits: dict[sct.DiscreteVariable, ex.Expression]
-    updates: list[tuple[sct.DiscreteVariable, ex.Expression, Any]]
-    target: sct.Location
-    node: Any
+    from robosc.language.cif.static_values import TypedNode
 
 
 def to_sct(names: Specification, name: str, *, supervised: bool = False) -> sct.SupervisoryControlModel:
@@ -70,7 +56,7 @@ class _CifToSct:
         self._supervised = supervised
         self._values = Values(names)
         self.model = sct.SupervisoryControlModel(name=name)
-        self._controllable: dict[sct.Event, Declaration] = {}
+        self._event_edges: dict[Scope, list[EventEdge]] = {}
         self._exclusions: dict[sct.Event, list[tuple[Any, ex.Expression]]] = {}
         self._plant_invariants: list[tuple[Any, ex.Expression]] = []
         scopes = list(_inside(names.root))
@@ -79,6 +65,11 @@ class _CifToSct:
         for scope in scopes:
             with names.reporting():
                 self._fill(scope)
+        events = (declared for scope in scopes for declared in scope.events)
+        self._channels = Channels(names, self._values, self._updates, events)
+        for scope, taken in self._channels.resolve(self._event_edges).items():
+            with names.reporting():
+                self._edges_of(taken, scope)
         for scope in scopes:
             with names.reporting():
                 self._predicates(scope)
@@ -111,7 +102,8 @@ class _CifToSct:
                 name=declared.name, controllable=control == "controllable", kind=kind, source=place_of(declared.node)
             )
             declared.element = event
-            self._controllable[event] = declared
+            with self._names.reporting():
+                self._channel(declared, scope)
         for known in scope.names.values():
             if isinstance(known, Declaration) and known.kind in ("Variables", "Inputs"):
                 # Until the type is known, only expressions in the type itself can read the variable.
@@ -123,6 +115,12 @@ class _CifToSct:
                     with self._names.reporting():
                         raise
 
+    def _channel(self, declared: Declaration, scope: Scope) -> None:
+        """Set the type of an event that is a channel."""
+        kind = declared.outer.type
+        if kind is not None:
+            declared.type = VOID if kind.type is None else self._values.synthesized_type(kind.type, scope)
+
     def _plant(self, scope: Scope) -> sct.Plant:
         """Return the plant of a scope; a group has one if it declares events or inputs."""
         if scope.plant is None:
@@ -131,7 +129,7 @@ class _CifToSct:
         return scope.plant
 
     def _variable(self, declared: Declaration, scope: Scope) -> None:
-        declared.type = self._values.declared_type(declared.outer.type, scope)
+        declared.type = self._values.synthesized_type(declared.outer.type, scope)
         if declared.type == "int":
             raise construct(declared.outer.type, "an int without range", "write `int[lowest..highest]`")
         plant = self._plant(scope)
@@ -153,7 +151,8 @@ class _CifToSct:
 
     def _keep(self, scope: Scope, used: set[sct.Event]) -> None:
         """Add the scope's plant to the model, with those of its events that can happen."""
-        events = [declared.element for declared in scope.events if declared.element in used]
+        declared = (event for declared in scope.events for event in self._channels.events_of(declared.element))
+        events = [event for event in declared if event in used]
         if events:
             plant = self._plant(scope)
             inputs = list(plant.events)
@@ -190,27 +189,35 @@ class _CifToSct:
         for declared in scope.names.values():
             with self._names.reporting():
                 if isinstance(declared, Declaration) and declared.kind in ("Constants", "Algebraics"):
-                    self._values.known(declared)
+                    self._define(declared)
                 elif (
                     isinstance(declared, Declaration) and declared.kind == "Variables" and declared.element is not None
                 ):
                     self._initialise(declared, scope)
-        taken: list[_EventEdge] = []
+        taken: list[EventEdge] = []
+        if _is_automaton(scope):
+            self._event_edges[scope] = taken
         initial = False
         for location, element in _elements(scope):
             initial = initial or type(element).__name__ == "LocationInitial"
             if type(element).__name__ == "Edge":
                 with self._names.reporting():
                     taken += self._taken(element, location, scope)
-        if _is_automaton(scope):
-            self._edges_of(taken, scope)
-            if not initial:
-                message = f"`{scope.path}` has no initial location"
-                raise CifFaultError(scope.node, "initial-state", message, "write `initial;` in one location")
+        if _is_automaton(scope) and not initial:
+            message = f"`{scope.path}` has no initial location"
+            raise CifFaultError(scope.node, "initial-state", message, "write `initial;` in one location")
 
-    def _edges_of(self, taken: list[_EventEdge], scope: Scope) -> None:
+    def _define(self, declared: Declaration) -> None:
+        """Read a constant or an algebraic variable. Outside of synthesis, a variable may have any value."""
+        try:
+            self._values.known(declared)
+        except CifFaultError as fault:
+            if declared.kind == "Constants" or fault.rule != "cif-construct":
+                raise
+
+    def _edges_of(self, taken: list[EventEdge], scope: Scope) -> None:
         """Create the edges and the requirements of an automaton."""
-        used = self._alphabet(taken, scope)
+        used = self._alphabet([edge for edge in taken if not edge.use], scope)
         watched = self._events(scope, "Monitor")
         if watched == []:
             watched = used
@@ -220,8 +227,10 @@ class _CifToSct:
             self._place(edges, event, scope, watching=requirement or event in (watched or ()))
             if requirement and event not in (watched or ()):
                 self._require(edges, event, scope)
+        for event in dict.fromkeys(edge.event for edge in taken if edge.use):
+            self._place([edge for edge in taken if edge.event is event], event, scope, watching=False)
 
-    def _alphabet(self, taken: Iterable[_EventEdge], scope: Scope) -> list[sct.Event]:
+    def _alphabet(self, taken: Iterable[EventEdge], scope: Scope) -> list[sct.Event]:
         """Return the events in which an automaton takes part."""
         declared = self._events(scope, "Alphabet")
         for edge in taken:
@@ -232,7 +241,12 @@ class _CifToSct:
         return list(dict.fromkeys(edge.event for edge in taken)) if declared is None else declared
 
     def _events(self, scope: Scope, rule: str) -> list[sct.Event] | None:
-        events = [self._event(name, scope) for declaration in scope.declarations(rule) for name in declaration.events]
+        events = [
+            event
+            for declaration in scope.declarations(rule)
+            for name in declaration.events
+            for event in self._channels.events_of(self._event(name, scope))
+        ]
         return list(dict.fromkeys(events)) if any(True for _ in scope.declarations(rule)) else None
 
     def _event(self, name: Any, scope: Scope) -> sct.Event:
@@ -245,15 +259,13 @@ class _CifToSct:
         event: sct.Event = declared.element
         return event
 
-    def _taken(self, node: Any, location: sct.Location, scope: Scope) -> Iterator[_EventEdge]:
+    def _taken(self, node: Any, location: sct.Location, scope: Scope) -> Iterator[EventEdge]:
         if not node.events or any(edge_event.tau for edge_event in node.events):
             raise construct(node, "edges without an event", TAU)
-        if node.urgent:
-            raise construct(node, "urgent edges", "leave out `now`")
-        for edge_event in node.events:
-            if edge_event.communication:
-                raise construct(edge_event, "channels", CHANNELS)
-        events = [self._event(edge_event.event, scope) for edge_event in node.events]
+        events = [self._edge_event(edge_event, scope) for edge_event in node.events]
+        uses = {use for _, use, _ in events}
+        if "?" in uses and len(uses) > 1:
+            raise CifFaultError(node, "type", "all events of an edge that receives must receive", "write two edges")
         target = location
         if node.target is not None:
             name = plain(node.target.name)
@@ -263,9 +275,16 @@ class _CifToSct:
                 raise CifFaultError(node.target, "unresolved-reference", *_missing(name, known))
             target = location_named
         guard = self._values.condition(node.guards, scope)
-        updates, fits = self._updates(node, scope)
-        for event in dict.fromkeys(events):
-            yield _EventEdge(location, event, guard, fits, updates, target, node)
+        updates, fits = ([], {}) if "?" in uses else self._updates(node, scope)
+        for event, use, sent in dict.fromkeys(events):
+            yield EventEdge(location, event, guard, fits, updates, target, node, use, sent)
+
+    def _edge_event(self, node: Any, scope: Scope) -> tuple[sct.Event, str, TypedNode | None]:
+        """Return an event of an edge, its use, and the value that it sends."""
+        event = self._event(node.event, scope)
+        declared = self._names.find(node.event, scope)
+        assert isinstance(declared, Declaration)
+        return event, (node.use or "").strip(), sent_value(node, declared, scope, self._values)
 
     def _updates(
         self, node: Any, scope: Scope
@@ -286,7 +305,7 @@ class _CifToSct:
     def _update(self, node: Any, scope: Scope) -> tuple[sct.DiscreteVariable, ex.Expression, Type]:
         if node.conditional:
             raise construct(node, "conditional updates", CONDITIONAL_UPDATES)
-        if node.several or node.projection:
+        if node.several or node.projections:
             raise construct(node, "updates of tuples and lists", "write a variable for each element")
         declared = self._names.find(node.variable, scope)
         if not isinstance(declared, Declaration) or declared.kind != "Variables":
@@ -297,12 +316,14 @@ class _CifToSct:
             message = f"`{node.variable.text}` is assigned by `{declared.scope.path}` only, which declares it"
             raise CifFaultError(node, "assignment-scope", message)
         value = self._values.whole(node.value, scope)
-        if not overlap(declared.type, value.type):
+        # The type of a received value is that of the channel; the sent value may be out of the variable's range.
+        fits = compatible if self._values.received is not None else overlap
+        if not fits(declared.type, value.type):
             message = f"`{declared.name}` is {format_type(declared.type)}, the assigned value {format_type(value.type)}"
             raise CifFaultError(node, "type", message)
         return declared.element, value.expression, value.type
 
-    def _place(self, edges: list[_EventEdge], event: sct.Event, scope: Scope, *, watching: bool) -> None:
+    def _place(self, edges: list[EventEdge], event: sct.Event, scope: Scope, *, watching: bool) -> None:
         """Create the edges of an event in a plant; if it monitors the event, it stays if no edge can be taken."""
         plant = scope.plant
         assert plant is not None
@@ -328,14 +349,14 @@ class _CifToSct:
             location = plant.locations[0]
             location.edges.append(sct.Edge(event=event, guard=never, target=location, source=place_of(scope.node)))
 
-    def _stay_in_range(self, edge: _EventEdge, plant: sct.Plant, *, alone: bool) -> None:
+    def _stay_in_range(self, edge: EventEdge, plant: sct.Plant, *, alone: bool) -> None:
         """Add the requirement that forbids an event if an edge would assign a value out of range.
 
         `alone` means that the plant has no other edge for the event, so that the event always takes this edge.
         """
         fits = conjunction(map(copy_tree, edge.fits.values()))
         assert fits is not None
-        premises = [*_at(edge.location, plant), *(copy_tree(part) for part in (edge.guard,) if part is not None)]
+        premises = [*at(edge.location, plant), *(copy_tree(part) for part in (edge.guard,) if part is not None)]
         premise = None if alone else conjunction(premises)
         self.model.requirements.append(
             sct.Requirement(
@@ -348,14 +369,14 @@ class _CifToSct:
             )
         )
 
-    def _require(self, edges: list[_EventEdge], event: sct.Event, scope: Scope) -> None:
+    def _require(self, edges: list[EventEdge], event: sct.Event, scope: Scope) -> None:
         """Add the requirement that an event happens only if a requirement automaton has an edge for it."""
         plant = scope.plant
         assert plant is not None
         allowed = []
         for edge in edges:
             guard = [copy_tree(part) for part in (edge.guard,) if part is not None]
-            here = conjunction([*_at(edge.location, plant), *guard])
+            here = conjunction([*at(edge.location, plant), *guard])
             if here is None:
                 return
             allowed.append(here)
@@ -377,7 +398,7 @@ class _CifToSct:
         if node.any:
             return
         if not node.values:
-            variable.initial = literal(_default(declared.type))
+            variable.initial = literal(default(declared.type))
             return
         several = []
         for value in node.values:
@@ -453,8 +474,6 @@ class _CifToSct:
         match type(node).__name__:
             case "Invariants":
                 self._invariants(node, scope, location)
-            case "Urgent":
-                raise construct(node, "urgent locations", "leave out `urgent`")
             case "LocationInitial" | "LocationMarked" as kind:
                 initial = kind == "LocationInitial"
                 if initial:
@@ -499,8 +518,8 @@ class _CifToSct:
         if here is not None:
             combine = ex.Implication if needs else ex.Conjunction
             condition = combine(left=here, right=condition)
-        for name in restriction.events:
-            event = self._event(name, scope)
+        named = (self._event(name, scope) for name in restriction.events)
+        for event in [divided for whole in named for divided in self._channels.events_of(whole)]:
             if plant:
                 own = copy_tree(condition)
                 self._exclusions.setdefault(event, []).append((node, own if needs else ex.Negation(operand=own)))
@@ -576,11 +595,6 @@ def _several(edges: Iterable[sct.Edge]) -> bool:
     return len(left) > len(set(left))
 
 
-def _at(location: sct.Location, plant: sct.Plant) -> list[ex.Expression]:
-    """Return the condition that the plant is in a location; empty if it has no other location."""
-    return [sct.LocationReference(location=location)] if len(plant.locations) > 1 else []
-
-
 def _fitting(variable: sct.DiscreteVariable, value: ex.Expression, kind: Type) -> Iterator[ex.Expression]:
     """Yield the conditions for a value to be in the range of its variable, unless its type guarantees them.
 
@@ -609,13 +623,6 @@ def _type(kind: Type) -> ex.Type:
     if isinstance(kind, range):
         return ex.IntegerType(minimum=kind.start, maximum=kind.stop - 1)
     return ex.EnumerationType(enumeration=kind) if isinstance(kind, ex.Enumeration) else ex.BooleanType()
-
-
-def _default(kind: Type) -> Any:
-    """Return CIF's default for a declaration without an initial value."""
-    if isinstance(kind, range):
-        return min(max(0, kind.start), kind.stop - 1)
-    return kind.literals[0] if isinstance(kind, ex.Enumeration) else False
 
 
 def _words(node: Any) -> str:

@@ -2,16 +2,26 @@
 
 from __future__ import annotations
 
+import re
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from robosc.language.cif.expressions import ExpressionReader, TypedNode, referenced_names
-from robosc.language.cif.faults import CHANNELS, CifFaultError, construct
+from robosc.language.cif import static_values
+from robosc.language.cif.expressions import ExpressionReader, pair, referenced_names
+from robosc.language.cif.faults import CifFaultError, construct
 from robosc.language.cif.scopes import Argument, Declaration, Scope, Specification, plain
+from robosc.language.cif.static_values import (
+    ForeignType,
+    Static,
+    TypedNode,
+    conformed,
+    constant_value,
+    is_foreign,
+    static_node,
+)
 from robosc.model import expression as ex
 from robosc.model import sct
 from robosc.model.semantics.cif_types import BOOLEAN, LARGEST, Type, contains, format_type
-from robosc.model.semantics.evaluation import evaluate
 from robosc.model.semantics.printing import conjunction
 from robosc.model.semantics.walks import copy_tree, parts
 
@@ -21,20 +31,31 @@ if TYPE_CHECKING:
 
 #: Size limits after expanding names, in operators and operands: of one expression, and of the whole specification.
 _LARGEST, _LARGEST_IN_ALL = 20_000, 100_000
-#: Operands that synthesis does not support, and hints to replace them.
-_FOREIGN = {
-    "Received": ("channels", CHANNELS),
-    "Time": ("time", "model the passing of time by events"),
-    "Real": ("reals", "write whole numbers"),
-    "String": ("strings", "write an enumeration"),
-    "Collection": ("lists, sets and dictionaries", "write a variable for each element"),
-}
 #: Maximum nesting depth of definitions. Definitions that are read one after the other are unlimited.
 _DEEPEST = 30
-#: Constructs with a name and a suffix, by the first character of the suffix.
-_SUFFIXES = {"'": "derivatives", "(": "functions", "[": "elements of lists and tuples"}
 _DEFINED = ("Constants", "Algebraics", "Types")
 _MINMAX = {"min": min, "max": max}
+_DISTRIBUTIONS = frozenset(
+    [
+        "bernoulli",
+        "beta",
+        "binomial",
+        "constant",
+        "erlang",
+        "exponential",
+        "gamma",
+        "geometric",
+        "lognormal",
+        "normal",
+        "poisson",
+        "random",
+        "triangle",
+        "uniform",
+        "weibull",
+    ]
+)
+#: Number of arguments of each function that does not have one.
+_ARGUMENTS = {"min": 2, "max": 2, "pow": 2, "del": 2, "scale": 5}
 
 
 #: A constant, an algebraic variable, a named type, or the argument of an algebraic parameter.
@@ -53,6 +74,8 @@ class Values:
         self._equations: dict[Scope, dict[str, list[tuple[sct.Location | None, Any]]]] = {}
         self._size = self._size_in_all = 0
         self._exhausted: CifFaultError | None = None
+        #: The value that `?` stands for in the updates of an edge that receives one.
+        self.received: TypedNode | None = None
 
     def typed(self, node: Any, scope: Scope) -> TypedNode:
         """Return the value of an expression in a scope. Raises CifFaultError."""
@@ -90,35 +113,77 @@ class Values:
 
     def _operand(self, node: Any, scope: Scope, switched: sct.Plant | None) -> TypedNode:
         match type(node).__name__:
-            case "Truth":
-                return TypedNode(node, ex.BooleanLiteral(value=node.value == "true"), BOOLEAN)
-            case "Number":
-                value = int(node.value) if len(node.value) < 12 else LARGEST + 1
-                if value > LARGEST:
-                    raise CifFaultError(node, "integer-range", "an int is at most 2147483647")
-                return TypedNode(node, ex.IntegerLiteral(value=value), range(value, value + 1))
-            case "Parenthesis":
-                return self._nested(node.inner, scope)._replace(node=node)
-            case "Call":
-                return self._call(node, scope)
+            case "Truth" | "Number" | "Real" | "String" as rule:
+                typed = _literal(node, rule)
+                return self._suffixed(typed, node, scope) if rule == "String" else typed
+            case "Parenthesis" if not node.more:
+                return self._suffixed(self._nested(node.inner, scope)._replace(node=node), node, scope)
+            case "Parenthesis" | "Call" | "Collection" as rule:
+                return self._suffixed(getattr(self, f"_{rule.lower()}")(node, scope), node, scope)
             case "Reference":
                 return self._reference(node, scope, switched)
             case "Own":
                 if scope.plant is None:
                     raise CifFaultError(node, "type", "`self` is allowed only in automata")
                 return TypedNode(node, None, scope.plant)
-        raise construct(node, *_FOREIGN[type(node).__name__])
+            case "Received":
+                return self._received(node)
+        raise construct(node, "time", "model the passing of time by events")
+
+    def _parenthesis(self, node: Any, scope: Scope) -> TypedNode:
+        values = [static_values.static_value(self._nested(part, scope), "tuples") for part in (node.inner, *node.more)]
+        return static_node(node, static_values.Tuple(tuple(values)))
+
+    def _collection(self, node: Any, scope: Scope) -> TypedNode:
+        elements = []
+        for element in node.elements:
+            parts = pair(element)
+            elements.append(
+                self._nested(element, scope)
+                if parts is None
+                else (self._nested(parts[0], scope), self._nested(parts[1], scope))
+            )
+        return static_values.collection(node, elements)
+
+    def _suffixed(self, typed: TypedNode, node: Any, scope: Scope) -> TypedNode:
+        """Return the element or part of a list, text, tuple or dictionary that the suffixes select."""
+        for suffix in node.suffixes:
+            if suffix.word != "[":
+                what = "derivatives" if suffix.word == "'" else "functions"
+                raise construct(node, what, "write an algebraic variable for its result")
+            bounds = None if suffix.first is None else pair(suffix.first)
+            if suffix.slice or bounds is not None:
+                limits = bounds or (suffix.first, suffix.last)
+                ends = [None if bound is None else self._nested(bound, scope) for bound in limits]
+                typed = static_values.sliced(suffix, typed, ends)
+                continue
+            if suffix.first is None:
+                raise CifFaultError(suffix, "syntax", "an index is missing here")
+            name = plain(getattr(getattr(suffix.first.first.value, "name", None), "text", ""))
+            value = constant_value(typed.expression)
+            is_field = isinstance(value, static_values.Tuple) and name in value.names
+            typed = static_values.projected(suffix, typed, name if is_field else self._nested(suffix.first, scope))
+        return typed
+
+    def _received(self, node: Any) -> TypedNode:
+        if self.received is None:
+            message = "`?` has a value only in the updates of an edge that receives one"
+            raise CifFaultError(node, "type", message)
+        self._grow(node, sum(1 for _ in parts(self.received.expression)))
+        return TypedNode(node, copy_tree(self.received.expression), self.received.type)
 
     def _call(self, node: Any, scope: Scope) -> TypedNode:
         name = node.function.strip()
-        if name not in ("min", "max", "abs"):
-            raise construct(node, f"the function `{name}`", "synthesis computes only `min`, `max` and `abs`")
+        if name in _DISTRIBUTIONS:
+            raise construct(node, "distributions", "write a value of the required type")
         arguments = [self._nested(argument, scope) for argument in node.arguments]
-        count = 1 if name == "abs" else 2
-        if len(arguments) != count:
+        count = _ARGUMENTS.get(name, 1)
+        if len(arguments) != count and name != "fmt":
             raise CifFaultError(
-                node, "argument", f"`{name}` takes {count} argument{'s'[: count - 1]}, found {len(arguments)}"
+                node, "argument", f"`{name}` takes {count} argument{'s' if count > 1 else ''}, found {len(arguments)}"
             )
+        if name not in ("min", "max", "abs") or any(is_foreign(value.type) for value in arguments):
+            return static_values.call(node, name, arguments)
         for argument, value in zip(node.arguments, arguments, strict=True):
             if not isinstance(value.type, range):
                 raise CifFaultError(argument, "type", f"`{name}` expects an int")
@@ -131,9 +196,10 @@ class Values:
         return TypedNode(node, call, range(least, most + 1))
 
     def _reference(self, node: Any, scope: Scope, switched: sct.Plant | None) -> TypedNode:
-        if node.suffix:
-            what = _SUFFIXES[node.suffix[0]]
-            raise construct(node, what, "write an algebraic variable for its result")
+        if node.suffixes:
+            calls = node.suffixes[0].word != "["
+            base = TypedNode(node, None, None) if calls else self._value(node, self.names.find(node.name, scope))
+            return self._suffixed(base, node, scope)
         if switched is not None:
             own = next((location for location in switched.locations if location.name == plain(node.name.text)), None)
             if own is not None:
@@ -162,13 +228,18 @@ class Values:
                 enumeration = self.enumeration(named.outer)
                 literal = next(literal for literal in enumeration.literals if literal.name == named.name)
                 return TypedNode(node, ex.EnumerationLiteralReference(literal=literal), enumeration)
+            case Declaration(kind="Function"):
+                raise construct(node, "functions", "write an algebraic variable for its result")
         raise CifFaultError(node, "type", f"`{node.name.text}` has no value")
 
     def _copied(self, node: Any, named: Definition) -> TypedNode:
         typed: TypedNode = self.known(named)
         if named not in self._sizes:
-            self._sizes[named] = sum(1 for _ in parts(typed.expression))
+            is_static = isinstance(typed.expression, Static)
+            self._sizes[named] = 1 if is_static else sum(1 for _ in parts(typed.expression))
         self._grow(node, self._sizes[named])
+        if isinstance(typed.expression, Static):
+            return typed._replace(node=node)
         return TypedNode(node, copy_tree(typed.expression), typed.type)
 
     def _grow(self, node: Any, more: int) -> None:
@@ -259,6 +330,8 @@ class Values:
         """Return the value of a constant or an algebraic variable."""
         kind = self.declared_type(declared.outer.type, declared.scope)
         typed = self._equation(declared) if declared.kind == "Algebraics" else self._fixed(declared)
+        if isinstance(kind, ForeignType):
+            return conformed(typed, kind, declared.name)
         if not (isinstance(typed.type, range) if kind == "int" else contains(kind, typed.type)):
             raise CifFaultError(
                 declared.node, "type", f"`{declared.name}` is {format_type(kind)}, its value {format_type(typed.type)}"
@@ -266,8 +339,8 @@ class Values:
         return typed
 
     def _fixed(self, declared: Declaration) -> TypedNode:
-        value, kind = self.constant(declared.node.value, declared.scope)
-        return TypedNode(declared.node, literal(value), kind)
+        value, _ = self.constant(declared.node.value, declared.scope)
+        return static_node(declared.node, value)
 
     def _equation(self, declared: Declaration) -> TypedNode:
         """Return the value of an algebraic variable from its declaration, an equation, or an equation per location."""
@@ -283,6 +356,8 @@ class Values:
             if result is None or location is None:
                 result = value
                 continue
+            if is_foreign(value.type) or is_foreign(result.type):
+                static_values.refuse_changing(value)
             if isinstance(value.type, range) and isinstance(result.type, range):
                 kind: Any = range(min(value.type.start, result.type.start), max(value.type.stop, result.type.stop))
             else:
@@ -313,22 +388,39 @@ class Values:
 
     # Types
 
-    def declared_type(self, node: Any, scope: Scope) -> Type | str:
-        """Return the type of a declaration; `int` if it has no range."""
+    def synthesized_type(self, node: Any, scope: Scope) -> Type:
+        """Return the type of a variable or channel. Raises CifFaultError if synthesis does not have the type."""
+        kind: Type | ForeignType = self.declared_type(node, scope)
+        if isinstance(kind, ForeignType):
+            hint = "synthesis takes `bool`, ranges of `int` and `enum`"
+            raise construct(node, f"the type `{kind.word}`", hint)
+        return kind
+
+    def declared_type(self, node: Any, scope: Scope) -> Any:
+        """Return the type of a declaration: `int` if it has no range, and a ForeignType for static values only."""
         match type(node).__name__:
             case "Boolean":
                 return BOOLEAN
             case "Integer":
                 return "int" if node.low is None else self._range(node, scope)
             case "ForeignType":
-                raise construct(node, f"the type `{node.word}`", "synthesis takes `bool`, ranges of `int` and `enum`")
+                return self._foreign_type(node, scope)
         declared = self.names.find(node.type, scope)
         if isinstance(declared, Declaration) and declared.kind == "Enumeration":
             return self.enumeration(declared)
         if not isinstance(declared, Declaration) or declared.kind != "Types":
             raise CifFaultError(node, "type", f"`{node.type.text}` is not a type")
-        kind: Type | str = self.known(declared)
-        return kind
+        return self.known(declared)
+
+    def _foreign_type(self, node: Any, scope: Scope) -> ForeignType:
+        fields = [(part.type, plain(name.name)) for part in node.fields for name in part.names]
+        kinds = [kind for kind in (node.keys, node.elements, *(kind for kind, _ in fields)) if kind is not None]
+        sizes = None
+        if node.size is not None:
+            low, high = (self.constant(bound, scope)[0] for bound in (node.size.low, node.size.high or node.size.low))
+            sizes = range(low, high + 1)
+        parts_of = tuple(self.declared_type(kind, scope) for kind in kinds)
+        return ForeignType(node.word, parts_of, tuple(name for _, name in fields), sizes)
 
     def _range(self, node: Any, scope: Scope) -> range:
         (low, lowest), (high, highest) = (self.constant(bound, scope) for bound in (node.low, node.high))
@@ -349,6 +441,22 @@ class Values:
         return enumeration
 
 
+def _literal(node: Any, rule: str) -> TypedNode:
+    """Return the value of a literal."""
+    match rule:
+        case "Truth":
+            return static_node(node, node.value == "true")
+        case "Real":
+            return static_node(node, float(node.value))
+        case "String":
+            escapes = {"n": "\n", "t": "\t"}
+            return static_node(node, re.sub(r"\\(.)", lambda match: escapes.get(match[1], match[1]), node.value[1:-1]))
+    value = int(node.value) if len(node.value) < 12 else LARGEST + 1
+    if value > LARGEST:
+        raise CifFaultError(node, "integer-range", "an int is at most 2147483647")
+    return static_node(node, value)
+
+
 def _too_large(node: Any, what: str, most: int) -> CifFaultError:
     message = f"{what} has more than {most} operators and operands"
     return CifFaultError(node, "cif-construct", message, "move parts of it to automata with variables")
@@ -360,34 +468,3 @@ def computed_from_itself(named: Definition) -> CifFaultError:
         verb = "defined by" if named.kind == "Types" else "computed from"
         return CifFaultError(named.node, "cyclic-definition", f"`{named.name}` is {verb} itself")
     return CifFaultError(named.node, "cyclic-definition", "the argument of the parameter is computed from itself")
-
-
-class _ChangingError(Exception):
-    """Signals that a value is not constant."""
-
-
-def constant_value(expression: ex.Expression) -> Any:
-    """Return the value of a constant expression, or None if it is not constant.
-
-    The value is a bool, an int or an enumeration literal.
-    """
-
-    def read(reference: ex.Expression) -> Any:
-        if isinstance(reference, ex.EnumerationLiteralReference):
-            return reference.literal
-        raise _ChangingError
-
-    try:
-        return evaluate(expression, read)
-    except _ChangingError:
-        return None
-
-
-def literal(value: Any) -> ex.Expression:
-    """Return a value as a literal."""
-    if isinstance(value, bool):
-        return ex.BooleanLiteral(value=value)
-    if isinstance(value, ex.EnumerationLiteral):
-        return ex.EnumerationLiteralReference(literal=value)
-    whole = ex.IntegerLiteral(value=abs(int(value)))
-    return ex.UnaryMinus(operand=whole) if value < 0 else whole

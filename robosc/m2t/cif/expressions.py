@@ -59,6 +59,14 @@ class CifPrinter(Printer):
             super().between(kind, left, right) if kind in COMPARISONS else f"{left}{BREAK}{self.symbols[kind]} {right}"
         )
 
+    def call(self, expression: ex.FunctionCall, printed_operands: Sequence[Printed]) -> Printed:
+        """Print a function call; `mod` is an operator of CIF."""
+        if expression.function != "mod":
+            return super().call(expression, printed_operands)
+        level = PRECEDENCE[ex.Multiplication]
+        left, right = (self.operand(level, operand) for operand in printed_operands)
+        return Printed(f"{left} mod {right}", level)
+
     def atom(self, expression: ex.Expression) -> str:
         """Return a name, qualified by its plant, or a literal."""
         match expression:

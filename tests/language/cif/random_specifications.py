@@ -34,6 +34,9 @@ class Edge:
     guard: Term
     updates: list[tuple[str, Term]]
     target: str
+    #: `!` and `?` by channel, and the sent values.
+    uses: dict[str, str] = field(default_factory=dict)
+    sent: dict[str, Term] = field(default_factory=dict)
 
 
 @dataclass
@@ -63,6 +66,7 @@ class Location:
     marked: Term | None = None
     edges: list[Edge] = field(default_factory=list)
     invariants: list[Invariant] = field(default_factory=list)
+    urgent: bool = False
 
 
 @dataclass
@@ -91,13 +95,19 @@ class Automaton:
     @property
     def alphabet(self) -> list[str]:
         used = list(
-            dict.fromkeys(event for location in self.locations for edge in location.edges for event in edge.events)
+            dict.fromkeys(
+                event
+                for location in self.locations
+                for edge in location.edges
+                for event in edge.events
+                if event not in edge.uses
+            )
         )
         return used if self.declared is None else self.declared
 
 
 TRUE = Term("true", lambda _: True)
-_CONSTANTS: dict[Any, str] = {2: "two"}
+_CONSTANTS: dict[Any, list[str]] = {2: ["two", "two", 'known["b"]', "both[n]", "size(halves)"]}
 _NARROW: list[tuple[str, Callable[[int, int], int]]] = [
     ("({} + {})", lambda a, b: a + b),
     ("(({} + {}) mod 3)", lambda a, b: (a + b) % 3),
@@ -125,7 +135,6 @@ FOREIGN = (
     ("plant S0: location: initial; marked; edge tau; end", "edges without an event"),
     ("plant S0: location: initial; marked; edge {event}, tau when true; end", "edges without an event"),
     ("plant S0: location: initial; marked; edge when false; end", "edges without an event"),
-    ("plant S0: location: initial; marked; urgent; edge {event}; end", "urgent locations"),
     ("plant S0: disc int n; location: initial; marked; edge {event}; end", "an int without range"),
     ("plant S0: disc list bool n; location: initial; marked; edge {event}; end", "the type `list`"),
     ("plant S0: cont n der 1.0; location: initial; marked; edge {event}; end", "continuous variables"),
@@ -145,6 +154,8 @@ class Specification:
         self.random = Random(seed)  # noqa: S311 - models, no secrets
         some = self.random
         self.narrow = narrow
+        # Later additions draw from their own source, so that the specification of a seed stays the same otherwise.
+        self.later = Random(seed + 1_000_000)  # noqa: S311 - models, no secrets
         self.negative = not narrow and some.random() < 0.25
         self.events = {f"{'c' if number % 3 else 'u'}{number}": number % 3 > 0 for number in range(some.randint(2, 5))}
         self.grouped = {event for event in self.events if some.random() < 0.3}
@@ -171,6 +182,14 @@ class Specification:
             # The twin comes last.
             (self._fill if automaton.twin_of is None else self._copy)(automaton)
         self._add_outside()
+        self.random, drawn = self.later, self.random
+        self.channels: dict[str, str] = {}
+        some = self.later
+        for number in range(some.choice([1, 2]) if some.random() < 0.5 else 0):
+            self._channel(number)
+        for location in (location for automaton in self.automata for location in automaton.locations):
+            location.urgent = some.random() < 0.05
+        self.random = drawn
         self._shape()
 
     def _add_outside(self) -> None:
@@ -184,6 +203,68 @@ class Specification:
             self.initial.append(self.condition(2))
         if some.random() < 0.1:
             self.marked.append(self.condition(2))
+
+    def _channel(self, number: int) -> None:
+        """Draw a channel, the automata that send, receive and synchronize, and an invariant of the channel."""
+        some = self.random
+        twins = {other.name for twin in self.automata if twin.twin_of for other in (twin, twin.twin_of)}
+        free = [automaton for automaton in self.automata if automaton.name not in twins]
+        plants = [automaton for automaton in free if automaton.kind == "plant"]
+        if len(plants) < 2:
+            return
+        controllable = some.random() < 0.6
+        name = f"{'k' if controllable else 'w'}{number}"
+        kinds = {"void": [None], "bool": [False, True], "int": [0, 1, 2, 3], "E": ["e0", "e1", "e2"]}
+        kind = self.channels[name] = some.choice(list(kinds))
+        self.events[name] = controllable
+        some.shuffle(plants)
+        most = some.randint(1, len(plants) - 1)
+        parties = {"!": plants[:most][:2], "?": plants[most:][:2]}
+        for use, members in parties.items():
+            choice = self.condition(0)
+            for place, automaton in enumerate(members):
+                # Only one pair can use a controllable channel in a state.
+                mine = [TRUE, TRUE] if len(members) == 1 or not controllable else [choice, _not(choice)]
+                for location in some.sample(automaton.locations, some.randint(1, len(automaton.locations))):
+                    for _ in range(1 if controllable else some.choice([1, 1, 2])):
+                        guard = _both(mine[place], self.condition(1) if some.random() < 0.3 else TRUE)
+                        edge = Edge([name], guard, [], some.choice(automaton.locations).name, {name: use})
+                        if use == "!" and kind != "void":
+                            edge.sent[name] = self.term(kinds[kind], 1)
+                        received = kinds[kind] if use == "?" and kind != "void" else [None]
+                        edge.updates = list(self._updates(automaton, received))
+                        location.edges.append(edge)
+        others = [automaton for automaton in free if automaton not in parties["!"] + parties["?"]]
+        if others and some.random() < 0.5:
+            self._synchronize(some.choice(others), name)
+        if some.random() < 0.3:
+            self.invariants.append(Invariant("requirement", "", self.condition(1), [name], some.random() < 0.5))
+
+    def _updates(self, automaton: Automaton, received: list[Any]) -> Iterator[tuple[str, Term]]:
+        """Draw updates that may use the received value, one of these values."""
+        some = self.random
+        for name, (_, values, _, _) in automaton.variables.items():
+            if type(values[0]) is type(received[0]) and some.random() < 0.8:
+                value = Term("?", lambda s: s["?"])
+                if isinstance(values[0], bool | str) or some.random() < 0.5:
+                    yield f"{automaton.name}.{name}", value
+                else:
+                    other = self.term(values, 0)
+                    yield f"{automaton.name}.{name}", Term(f"(? + {other.text})", _sum(other))
+            elif some.random() < 0.3:
+                yield f"{automaton.name}.{name}", self.term(values, 1)
+
+    def _synchronize(self, automaton: Automaton, channel: str) -> None:
+        """Draw edges of an automaton that neither sends nor receives."""
+        some = self.random
+        for location in automaton.locations:
+            if some.random() < 0.7:
+                edge = self._edge([channel], automaton)
+                location.edges.append(edge)
+        if automaton.declared is not None and channel not in automaton.declared:
+            automaton.declared = [*automaton.declared, channel]
+        elif automaton.watched and channel in automaton.alphabet and some.random() < 0.5:
+            automaton.watched = [*automaton.watched, channel]
 
     def _shape(self) -> None:
         """Draw the textual form of the specification."""
@@ -460,7 +541,8 @@ class Specification:
             return Term(self._called(name), lambda s: s[name])
         chosen = some.choice(values)
         return Term(
-            _CONSTANTS[chosen] if chosen in _CONSTANTS and some.random() < 0.5 else _text(chosen), lambda _: chosen
+            self.later.choice(_CONSTANTS[chosen]) if chosen in _CONSTANTS and some.random() < 0.5 else _text(chosen),
+            lambda _: chosen,
         )
 
     def _computed(self, values: list[Any], depth: int) -> Term:
@@ -497,12 +579,20 @@ class Specification:
         return {name: "\n".join(lines) for name, lines in files.items()}
 
     def _names(self) -> list[str]:
-        lines = ["const int two = 2;", "const bool yes = true;", "enum E = e0, e1, e2;", "type T = int[0..two];"]
+        lines = [
+            "const list[2] real halves = [1.5, 0.5];",
+            'const dict(string: int[0..2]) known = {"a": 1, "b": 2};',
+            "const tuple(int[0..2] n; bool b) both = (2, true);",
+            "const int two = 2;",
+            "const bool yes = both[b] and floor(2.5) = two and round(halves[0]) = two and 2 in {1, 2};",
+            "enum E = e0, e1, e2;",
+            "type T = int[0..two];",
+        ]
         inner = [f"  input {kind} {name};" for name, (kind, _) in self.inputs.items()]
         if self.annotated:
             lines.insert(0, '@@doc("What @doc(\\"it\\") is, a: b;")')
         for event, controllable in self.events.items():
-            line = f"{'' if controllable else 'un'}controllable {event};"
+            line = f"{'' if controllable else 'un'}controllable {self._typed(event)}{event};"
             if self.annotated and event == "u0":
                 line = f'@doc("The first.") @other:one(a: 1, b: [true, false], c: (2, "x")) {line}'
             if event in self.grouped:
@@ -514,6 +604,10 @@ class Specification:
             if self.group_defined:
                 lines.append("g: G();")
         return lines
+
+    def _typed(self, event: str) -> str:
+        """Return the type of a channel, followed by a space."""
+        return f"{self.channels[event]} " if event in self.channels else ""
 
     def _components(self) -> list[str]:
         lines, grouped = [], []
@@ -546,7 +640,10 @@ class Specification:
             return [header, *(self._absolute(line) for line in self._body(automaton, self.event)), "end"]
         body = self._body(first, lambda name: f"p_{name}")
         parameters = {name for line in body for name in re.findall(r"\bp_(\w+)", line)}
-        declared = [f"{'' if self.events[name] else 'un'}controllable p_{name}" for name in sorted(parameters)]
+        declared = [
+            f"{'' if self.events[name] else 'un'}controllable {self._typed(name)}p_{name}"
+            for name in sorted(parameters)
+        ]
         given = [self.event(automaton.renamed.get(name, name)) for name in sorted(parameters)]
         for outside in sorted({name for line in body for name in _OUTSIDE.findall(line)}):
             if outside.split(".")[0] != first.name:
@@ -675,7 +772,17 @@ class Specification:
             ]
             watches = automaton.kind == "requirement" or event in automaton.watched
             choices.append(own or ([None] if watches else []))
+        if event in self.channels:
+            choices += [list(self._parties(event, use, state)) for use in "!?"]
         yield from ([taken for taken in chosen if taken is not None] for chosen in product(*choices))
+
+    def _parties(self, channel: str, use: str, state: State) -> Iterator[tuple[Automaton, Edge]]:
+        """Yield the edges that send, or those that receive."""
+        for automaton in self.automata:
+            here = next(location for location in automaton.locations if location.name == state[automaton.name])
+            for edge in here.edges:
+                if edge.uses.get(channel) == use and edge.guard.value(state):
+                    yield automaton, edge
 
     def _required(self, event: str, state: State) -> bool:
         for automaton in self.automata:
@@ -725,12 +832,15 @@ class Specification:
     def _tried(self, state: State) -> Iterator[tuple[str, State]]:
         """Yield the same without regard to plant invariants on states."""
         for event in self.events:
-            if any(event in automaton.alphabet for automaton in self.automata) and self._allowed("plant", event, state):
+            used = event in self.channels or any(event in automaton.alphabet for automaton in self.automata)
+            if used and self._allowed("plant", event, state):
                 for taken in self._taken(event, state):
                     after = dict(state)
+                    sent = [edge.sent[event].value(state) for _, edge in taken if event in edge.sent]
+                    before = {**state, "?": sent[0]} if sent else state
                     for automaton, edge in taken:
                         after[automaton.name] = edge.target
-                        after.update({name: value.value(state) for name, value in edge.updates})
+                        after.update({name: value.value(before) for name, value in edge.updates})
                     yield event, after
 
 
@@ -744,6 +854,20 @@ def _closure(start: set[int], steps: list[tuple[int, int]]) -> set[int]:
         found |= fresh
         pending += fresh
     return found
+
+
+def _not(term: Term) -> Term:
+    return Term(f"(not {term.text})", lambda s: not term.value(s))
+
+
+def _both(left: Term, right: Term) -> Term:
+    if TRUE in (left, right):
+        return right if left is TRUE else left
+    return Term(f"({left.text} and {right.text})", lambda s: left.value(s) and right.value(s))
+
+
+def _sum(other: Term) -> Callable[[State], Any]:
+    return lambda s: s["?"] + other.value(s)
 
 
 def _at(automaton: str, location: str) -> Term:
@@ -765,6 +889,8 @@ def _elements(location: Location, automaton: Automaton, event: Callable[[str], s
     for word, condition in (("initial", location.initial), ("marked", location.marked)):
         if condition is not None:
             yield f"{word}{'' if condition is TRUE else f' {condition.text}'};"
+    if location.urgent:
+        yield "urgent;"
     for name, (_, values) in automaton.algebraic.items():
         if location.name in values:
             yield f"equation {name} = {values[location.name].text};"
@@ -773,7 +899,10 @@ def _elements(location: Location, automaton: Automaton, event: Callable[[str], s
     for edge in location.edges:
         guard = "" if edge.guard is TRUE else f" when {edge.guard.text}"
         updates = ", ".join(f"{name} := {value.text}" for name, value in edge.updates)
-        events = ", ".join(map(event, edge.events))
+        events = ", ".join(
+            f"{event(name)}{edge.uses.get(name, '')}{edge.sent[name].text if name in edge.sent else ''}"
+            for name in edge.events
+        )
         goto = "" if edge.target == location.name else f" goto {edge.target}"
         yield f"edge {events}{guard}{f' do {updates}' if updates else ''}{goto};"
 

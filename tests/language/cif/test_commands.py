@@ -170,6 +170,7 @@ def test_a_range_that_the_text_keeps_is_no_restriction(tmp_path: Path) -> None:
         ("x := x - 1", "P.x >= 1"),
         ("x := 2 - y", "2 >= P.y"),
         ("x := Q.z", "Q.z <= 3"),
+        ("x := (x + Q.z) mod 7", "(P.x + Q.z) mod 7 <= 3"),
         ("y := x + Q.z - 4", "P.x + Q.z >= 4 and P.x + Q.z <= 9"),
         ("x := x - 1, y := y + 1", "P.x >= 1 and P.y + 1 <= 5"),
     ],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from math import prod
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,6 +16,7 @@ from robosc.language.configuration import Configuration
 from robosc.m2t import cif
 from robosc.model import expression as ex
 from robosc.model.semantics.roles import input_values
+from robosc.synthesis import count as count_states
 from robosc.synthesis import synthesize
 from robosc.tools.cli import main
 from tests.fuzz.valid import checked
@@ -107,13 +109,6 @@ def test_what_is_written_of_specifications_is_valid(tools: Tools, tmp_path: Path
     ("text", "transformation", "states"),
     [
         (
-            """controllable int[0..3] c;
-            plant s: location: initial; marked; edge c!2; end
-            plant r: disc int[0..3] x; location: initial; marked; edge c? do x := ?; end""",
-            "linearize-product",
-            2,
-        ),
-        (
             """controllable c;
             plant p: disc bool x, y; location: initial; marked; edge c do if x: y := true else x := true end; end""",
             "elim-if-updates",
@@ -142,6 +137,17 @@ def test_the_transformation_that_a_finding_names_takes_the_construct_out(
     model = read(without).model
     assert model is not None
     assert synthesize(model).controlled_states == tools.synthesize(without).states == states
+
+
+@pytest.mark.parametrize("name", [name for name in COUNTS if "channel" in name])
+def test_channels_are_the_events_of_linearize_product(tools: Tools, tmp_path: Path, name: str) -> None:
+    path, without = tmp_path / "with.cif", tmp_path / "without.cif"
+    path.write_text(COUNTS[name][0])
+    called = tools.call(TRANSFORMER, str(path), "-t", "linearize-product", "-o", str(without))
+    assert called.status == 0, called.output
+    model = read(without).model
+    assert model is not None
+    assert synthesize(model).controlled_states == tools.synthesize(path).states == COUNTS[name][1]
 
 
 def test_the_transformation_that_gives_edges_an_event(tools: Tools, tmp_path: Path) -> None:
@@ -250,6 +256,68 @@ def test_written_specifications_run_to_the_states_of_cifs_own_supervisor(tools: 
 @pytest.mark.skipif(
     not (home() or Path()).joinpath(_OWN).is_dir(), reason=f"ESCET_HOME has no folder {_OWN}: benchmarks/escet.md"
 )
+@pytest.mark.parametrize("start", range(0, 200, 50))
+def test_channels_have_as_many_states(tools: Tools, tmp_path: Path, start: int) -> None:
+    """CIF's explorer reaches the same states and edges under both supervisors."""
+    compared = explored = 0
+    for seed in range(start, start + 50):
+        specification = Specification(seed, narrow=True)
+        if not specification.channels or specification.differs_in_cif():
+            continue
+        path, text = _written(tmp_path, specification), "\n".join(specification.files.values())
+        theirs = tools.synthesize(path)
+        if theirs.states is None or reading_of(specification).model is None:
+            continue
+        assert theirs.states == specification.controlled_states(), text
+        compared += 1
+        both = None if "input" in text else _both(tools, path, tmp_path)
+        # CIF's explorer crashes if initial predicates name each other's locations.
+        if both is not None and both[1].call.status == 0:
+            assert both[0].size is not None, f"{text} {both[0].call.output}"
+            assert both[0].size == both[1].size, text
+            explored += 1
+    assert compared > 5
+    assert explored
+
+
+#: Specifications of ESCET's own tests and examples, except expected outputs.
+_SPECIFICATIONS = [
+    path.relative_to(folder)
+    for folder in [home() or Path("nowhere")]
+    for path in [*sorted(folder.glob("tests/**/*.cif")), *sorted(folder.glob("examples/**/*.cif"))]
+    if path.relative_to(folder).parts[0] == "examples" or path.name.count(".") == 1
+]
+
+
+@pytest.fixture(scope="module")
+def copied(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a folder with copies of the specifications: the tools write beside them."""
+    folder = tmp_path_factory.mktemp("escet")
+    for name in ("tests", "examples"):
+        if (home() or Path("nowhere")).joinpath(name).is_dir():
+            shutil.copytree((home() or Path()) / name, folder / name)
+    return folder
+
+
+@pytest.mark.skipif(not _SPECIFICATIONS, reason="ESCET_HOME has neither tests nor examples: benchmarks/escet.md")
+@pytest.mark.parametrize("start", range(8))
+def test_cifs_own_specifications_have_as_many_states(tools: Tools, copied: Path, start: int) -> None:
+    """RoboSC reads each specification that CIF's synthesis accepts, except those without an initial location."""
+    compared = 0
+    for path in _SPECIFICATIONS[start::8]:
+        theirs = tools.synthesize(copied / path)
+        if theirs.states is None:
+            continue
+        reading = read(copied / path)
+        if reading.model is None:
+            assert {finding.rule for finding in reading.findings} == {"initial-state"}, path
+            continue
+        # CIF's tool computes the number as a floating-point number.
+        assert float(count_states(reading.model).controlled_states) == pytest.approx(theirs.states, rel=1e-14), path
+        compared += 1
+    assert compared > 10
+
+
 def test_cifs_own_tests_run_to_the_states_of_its_supervisor(tools: Tools, tmp_path: Path) -> None:
     folder = home()
     assert folder is not None

@@ -159,6 +159,71 @@ COUNTS = {
         "namespace a.b;" + _EVENTS + _ROOM + "initial p.x = 0; requirement p.x != 2;",
         2,
     ),
+    "a channel without data": (
+        "controllable void c; uncontrollable void u;\n"
+        "plant s: location a: initial; marked; edge c! goto b; location b: marked; edge u! goto a; end\n"
+        "plant r: location a: initial; marked; edge c? goto b; location b: edge u? goto a; end",
+        2,
+    ),
+    "a channel with several values, a range and a monitor": (
+        "controllable int[0..9] c; controllable e;\n"
+        "plant s: disc int[0..9] n; location: initial; marked; edge c!n; edge e when n < 9 do n := n + 1; end\n"
+        "plant r: disc int[0..3] v; location: initial; marked; edge c? do v := ?; end\n"
+        "plant m: alphabet c; monitor c; location: initial; marked; end",
+        34,
+    ),
+    "several senders and receivers of a controllable channel": (
+        "controllable int e; plant cnt: controllable next; disc int[0..3] c = 0; location: initial; marked;"
+        "edge next when c < 3 do c := c + 1; end\n"
+        "plant snd1: location: initial; marked; edge e!1 when cnt.c = 1; end\n"
+        "plant snd2: location: initial; marked; edge e!2 when cnt.c = 2; end\n"
+        "plant rcv1: disc int[0..3] x; location: initial; marked; edge e? when cnt.c = 1 do x := ?; end\n"
+        "plant rcv2: disc int[0..3] x; location: initial; marked; edge e? when cnt.c = 2 do x := ?; end\n"
+        "requirement e needs rcv1.x = 0 or rcv2.x = 1;",
+        9,
+    ),
+    "several senders and receivers of an uncontrollable channel": (
+        "uncontrollable int u; controllable c;\n"
+        "plant s1: location: initial; marked; edge u!1; edge u!2; end\n"
+        "plant s2: disc bool b; location: initial; marked; edge c do b := not b; edge u!3 when b; end\n"
+        "plant r1: disc int[0..5] v; location: initial; marked; edge u? do v := ?; end\n"
+        "plant r2: disc int[0..5] v; location: initial; marked; edge u? do v := ? + 1; end\n"
+        "plant y: monitor u; disc int[0..1] k; location: initial; marked; edge u when k = 0 do k := 1; end\n"
+        "requirement r1.v != 3;",
+        9,
+    ),
+    "a channel that nobody receives from": (
+        "controllable void d;"
+        + _EVENTS.replace(", d", "")
+        + _ROOM.replace("edge d", "edge d!")
+        + "requirement d needs false;",
+        4,
+    ),
+    "a channel as a parameter": (
+        "uncontrollable int[0..4] u; controllable c;\n"
+        "plant def S(event int[0..4] e!; alg int[0..4] v): location: initial; marked; edge e!v when r.v < 3; end\n"
+        "a: S(u, 1); plant r: disc int[0..4] v; location: initial; marked; edge u? do v := ? + v; edge c do v := 0; end",
+        4,
+    ),
+    "urgent locations and edges": (
+        _EVENTS
+        + _ROOM.replace("edge d", "edge d now").replace("marked;", "marked; urgent;")
+        + "requirement c needs p.x < 2;",
+        3,
+    ),
+    "static values of all types": (
+        _EVENTS
+        + _ROOM
+        + 'const list real l = [1.5, 2.5]; const dict(string: tuple(int a; bool b)) t = {"x": (1, true)};\n'
+        "type S = set int; const S s = {1, 2}; const int two = round(l[0]); const bool odd = -7 mod 2 = -1 and pow(2, 3) = 8;\n"
+        'const bool all = size(s) = two and {1} sub s and 2 in s and not empty(l) and l[1:] = [2.5] and <string>1.5 = "1.5";\n'
+        'alg real unused = p.x * 1.5; requirement c needs p.x < floor(l[1]) and odd and all and t["x"][b] or p.x = sign(-2.0);',
+        3,
+    ),
+    "a function outside of synthesis": (
+        _EVENTS + _ROOM + "func int f(int x): return x; end alg int y = f(p.x);",
+        4,
+    ),
     # CIF's synthesis rejects the rest.
     "min, max, abs and products": (
         _EVENTS + "plant p: disc int[-2..9] x; location: initial; marked;"

@@ -37,7 +37,7 @@ def supervised(seed: int) -> sct.SupervisoryControlModel | None:
 
 @pytest.mark.slow
 def test_what_verify_says_of_them_and_where_they_start() -> None:
-    models = [model for seed in range(60) if (model := supervised(seed)) is not None]
+    models = [model for seed in range(80) if (model := supervised(seed)) is not None]
     assert len(models) >= 20
     for model in models:
         refuted = [verdict for verdict in verify_system(model) if verdict.outcome is Outcome.REFUTED]
