@@ -15,7 +15,7 @@ from robosc.analysis.system import format_count
 from robosc.analysis.verify.loop import LoopModel, require_loop_states
 from robosc.analysis.verify.response import bounded_response, confluence, finite_response
 from robosc.analysis.verify.verdict import Outcome, Verdict, trace_step
-from robosc.analysis.wording import in_words, join_with_and, name, words
+from robosc.analysis.wording import goal_in_words, in_words, join_with_and, name, words
 from robosc.model import expression as ex
 from robosc.model import sct
 from robosc.model.places import place
@@ -24,8 +24,8 @@ from robosc.model.semantics.roles import event_name, is_from_cif, plant_of
 from robosc.model.semantics.walks import copy_tree
 from robosc.synthesis.decoding import value
 from robosc.synthesis.encoding import pick, referenced_elements
-from robosc.synthesis.fixpoint import coreachable, supervise
-from robosc.synthesis.relation import required_moves, steps
+from robosc.synthesis.fixpoint import coreachable, reaching, supervise
+from robosc.synthesis.relation import Goal, required_moves, steps
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -240,14 +240,17 @@ def claim_holds(system: GuardedSystem, claimed: sct.Property) -> Verdict:
 
 def goal_reachable(system: GuardedSystem, claimed: sct.ReachabilityProperty | sct.ReachabilityRequirement) -> Verdict:
     """Check that every reachable state with the premise can reach a state with the condition."""
-    states = system.controlled
-    start, goal = states & system.encoding.holds(claimed.premise), states & system.encoding.holds(claimed.condition)
-    stuck = {claimed: start & ~coreachable(system.diagrams, steps(system.moves), goal, states)}
+    states, holds = system.controlled, system.encoding.holds
+    is_enforced = isinstance(claimed, sct.ReachabilityRequirement)
+    goal = system.goals[claimed] if is_enforced else Goal(holds(claimed.premise), holds(claimed.condition))
+    start = states & goal.premise
+    stuck = {claimed: start & ~reaching(system.diagrams, steps(system.moves), goal, states)}
     condition_text = RobotPrinter()(claimed.condition)
+    wanted = (goal_in_words(claimed) if is_enforced else None) or f"state with `{condition_text}`"
 
     def explanation(_: object, path: Path) -> str:
         elements = [*referenced_elements(claimed.premise), *referenced_elements(claimed.condition)]
-        return f"from `{system.where(path.states[-1], elements)}` no state with `{condition_text}` can be reached"
+        return f"from `{system.where(path.states[-1], elements)}` no {wanted} can be reached"
 
     origin = format_count(system.encoding.count(start), "state")
     return _nowhere(requirement_name(claimed), system, f"from {origin} to `{condition_text}`", stuck, explanation)
