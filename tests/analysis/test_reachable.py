@@ -513,12 +513,15 @@ def test_verify_against_an_explicit_search(model: sct.SupervisoryControlModel, i
         return explicit.oracle.value(condition, state, {})
 
     def is_stranded(state: State, required: sct.ReachabilityRequirement) -> bool:
-        onwards, pending = {state}, [state]
-        for here in pending:
-            fresh = {after for _, after in explicit.moves(here)} - onwards
-            onwards |= fresh
-            pending += fresh
-        return holds(required.premise, state) and not any(holds(required.condition, after) for after in onwards)
+        latest = onwards = {state} if holds(required.pathCondition, state) else set()
+        steps = 0
+        while latest and steps != required.bound:
+            after = {after for here in latest for _, after in explicit.moves(here)} - onwards
+            latest = {state for state in after if holds(required.pathCondition, state)}
+            onwards = onwards | latest
+            steps += 1
+        is_due = bool(onwards) and holds(required.premise, state)
+        return is_due and not any(holds(required.condition, after) for after in onwards)
 
     def look(encoding: Encoding) -> list[Verdict]:
         system = GuardedSystem(model, encoding)

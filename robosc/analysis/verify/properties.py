@@ -10,6 +10,7 @@ from functools import partial
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from robosc.analysis.given_supervisor import flaw_in_words, flaws, states_of_given_supervisor
 from robosc.analysis.paths import TraceStep
 from robosc.analysis.system import format_count
 from robosc.analysis.verify.loop import LoopModel, require_loop_states
@@ -60,6 +61,7 @@ def properties(system: GuardedSystem) -> list[Callable[[], Verdict]]:
     return [
         partial(non_blocking, system),
         partial(controllability, system),
+        *([partial(given_supervisor, system)] if system.model.supervised else []),
         *([] if stepwise else [partial(input_enabledness, system)]),
         *(partial(_examine_statement, requirement_holds, system, statement) for statement in written),
         *([partial(ranges, system)] if len(written) < len(system.model.requirements) else []),
@@ -111,6 +113,15 @@ def controllability(system: GuardedSystem) -> Verdict:
 
     evidence = f"{system.size}, {format_count(len(uncontrollable), 'uncontrollable event')}"
     return _nowhere("controllability", system, evidence, forbidden, explanation)
+
+
+def given_supervisor(system: GuardedSystem) -> Verdict:
+    """Check that the supervisor in the text needs no addition: it is controllable, non-blocking and safe by itself."""
+    question, reached = "given supervisor", states_of_given_supervisor(system)
+    evidence = format_count(system.encoding.count(reached), "state")
+    for flaw in flaws(system, reached):
+        return Verdict(question, Outcome.REFUTED, evidence, flaw_in_words(flaw, system.model), flaw.trace)
+    return Verdict(question, Outcome.PROVED, evidence)
 
 
 def input_enabledness(system: GuardedSystem) -> Verdict:

@@ -52,7 +52,8 @@ def read(path: Path | str, documents: Documents | None = None) -> CifReading:
     for specification in files.specifications:
         names.add(specification)
     names.make_instances()
-    model = to_sct(names, Path(path).name.removesuffix(".cif"))
+    # The name becomes an identifier in generated code, also that of `model.supervised.cif`.
+    model = to_sct(names, Path(path).name.removesuffix(".cif").replace(".", "_"))
     findings = in_order([*files.findings, *names.findings])
     if names.findings:
         return CifReading(None, findings, files.texts)
