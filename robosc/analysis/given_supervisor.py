@@ -51,7 +51,9 @@ def flaws(system: SupervisedSystem, reached: Diagram) -> tuple[Flaw, ...]:
         path = layers.path_to(states) if states.satisfiable() else None
         if path is not None:
             end = path.states[-1]
-            unmarked = () if requirement else tuple((own, _location(own, end)) for own in system.never_marked(end, moves))
+            unmarked = (
+                () if requirement else tuple((own, _location(own, end)) for own in system.never_marked(end, moves))
+            )
             found.append(Flaw(requirement, system.trace(path), unmarked))
     return tuple(found)
 

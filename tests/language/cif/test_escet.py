@@ -241,9 +241,7 @@ def _write_explorable(folder: Path, files: Mapping[str, str]) -> None:
 
 
 @pytest.mark.parametrize("construct", COUNTS)
-def test_each_construct_runs_to_the_states_of_cifs_own_supervisor(
-    tools: Tools, tmp_path: Path, construct: str
-) -> None:
+def test_each_construct_runs_to_the_states_of_cifs_own_supervisor(tools: Tools, tmp_path: Path, construct: str) -> None:
     """An update outside its range ends the explorer in an error."""
     text, _ = COUNTS[construct]
     _write_explorable(tmp_path / "construct", {"construct.cif": text})
