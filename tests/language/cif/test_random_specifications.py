@@ -58,7 +58,7 @@ def test_what_verify_says_of_them_and_where_they_start() -> None:
 @pytest.mark.slow
 def test_given_supervisors_suffice_as_by_the_definition() -> None:
     sufficient = []
-    for seed in range(0, 400, 4):
+    for seed in range(0, 800, 4):
         specification = Specification(seed)
         model = reading_of(specification).model
         if model is None or not model.supervised:
