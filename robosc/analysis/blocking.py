@@ -83,8 +83,8 @@ def _blocked_from_the_start(system: SynthesizedSystem) -> BlockReason:
     violated = system.violated(start)
     goal = violated[0] if violated else None
     if isinstance(goal, sct.ReachabilityRequirement):
-        wanted = system.goals[goal]
-        path = _path_of_plants(system, wanted.states, wanted.along)
+        _, states, along, _ = system.goals[goal]
+        path = _path_of_plants(system, states, along)
         unmarked = []
     else:
         goal = None

@@ -46,7 +46,7 @@ def flaws(system: SupervisedSystem, reached: Diagram) -> tuple[Flaw, ...]:
     """
     moves = required_moves(system.relations.values())
     layers = Layers(system.encoding, moves, system.encoding.initial, reached)
-    found = []
+    collected = []
     for requirement, states in _faults(system, reached):
         path = layers.path_to(states) if states.satisfiable() else None
         if path is not None:
@@ -54,8 +54,8 @@ def flaws(system: SupervisedSystem, reached: Diagram) -> tuple[Flaw, ...]:
             unmarked = (
                 () if requirement else tuple((own, _location(own, end)) for own in system.never_marked(end, moves))
             )
-            found.append(Flaw(requirement, system.trace(path), unmarked))
-    return tuple(found)
+            collected.append(Flaw(requirement, system.trace(path), unmarked))
+    return tuple(collected)
 
 
 def _faults(system: SupervisedSystem, reached: Diagram) -> Iterator[tuple[sct.StatedRequirement | None, Diagram]]:

@@ -252,16 +252,17 @@ def claim_holds(system: GuardedSystem, claimed: sct.Property) -> Verdict:
 def goal_reachable(system: GuardedSystem, claimed: sct.ReachabilityProperty | sct.ReachabilityRequirement) -> Verdict:
     """Check that every reachable state with the premise can reach a state with the condition."""
     states, holds = system.controlled, system.encoding.holds
-    is_enforced = isinstance(claimed, sct.ReachabilityRequirement)
-    goal = system.goals[claimed] if is_enforced else Goal(holds(claimed.premise), holds(claimed.condition))
+    condition_text = RobotPrinter()(claimed.condition)
+    if isinstance(claimed, sct.ReachabilityRequirement):
+        goal, target = system.goals[claimed], goal_in_words(claimed)
+    else:
+        goal, target = Goal(holds(claimed.premise), holds(claimed.condition)), f"state with `{condition_text}`"
     start = states & goal.premise
     stuck = {claimed: start & ~reaching(system.diagrams, steps(system.moves), goal, states)}
-    condition_text = RobotPrinter()(claimed.condition)
-    wanted = (goal_in_words(claimed) if is_enforced else None) or f"state with `{condition_text}`"
 
     def explanation(_: object, path: Path) -> str:
         elements = [*referenced_elements(claimed.premise), *referenced_elements(claimed.condition)]
-        return f"from `{system.where(path.states[-1], elements)}` no {wanted} can be reached"
+        return f"from `{system.where(path.states[-1], elements)}` no {target} can be reached"
 
     origin = format_count(system.encoding.count(start), "state")
     return _nowhere(requirement_name(claimed), system, f"from {origin} to `{condition_text}`", stuck, explanation)
