@@ -51,7 +51,10 @@ def flaws(path: Path) -> list[str]:
             "supervisor c needs P.n < 2; supervisor d needs false; supervisor u needs P.n < 2;",
             [
                 "after `c`, then `u`, then `c`, `P` in `b` cannot get back to a marked state",
-                "after `c`, then `u`, then `c`, `supervisor u needs P.n < 2` (line 8) forbids `u`, which cannot be prevented",
+                (
+                    "after `c`, then `u`, then `c`, `supervisor u needs P.n < 2` (line 8) forbids `u`, "
+                    "which cannot be prevented"
+                ),
             ],
         ),
         (
