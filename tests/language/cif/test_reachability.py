@@ -4,11 +4,14 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
+from hypothesis import event, given, settings
+from hypothesis import strategies as st
 
 from robosc.language.cif import read
 from robosc.language.text import Documents
 from robosc.synthesis import synthesize
 from robosc.tools.cli import main
+from tests.searching import examples
 from tests.synthesis.oracle import Oracle
 
 #: Two ways from `a` to `d`: directly, and by `b` and `c`. Only `c` leads on from `b`.
@@ -22,10 +25,10 @@ end
 """
 
 
-def _remaining(arguments: str) -> set[str]:
+def _remaining(arguments: str, plant: str = _WAYS) -> set[str]:
     """Return the locations that remain under the supervisor, after comparing them with an explicit search."""
     path = Path("ways.cif").resolve()
-    reading = read(path, Documents({str(path): f"@requirement:reachable({arguments})\n{_WAYS}"}))
+    reading = read(path, Documents({str(path): f"@requirement:reachable({arguments})\n{plant}"}))
     assert reading.findings == []
     assert reading.model is not None
     oracle = Oracle(reading.model)
@@ -59,6 +62,36 @@ def _remaining(arguments: str) -> set[str]:
 )
 def test_the_supervisor_keeps_paths_within_the_arguments(arguments: str, remaining: str) -> None:
     assert _remaining(arguments) == set(remaining)
+
+
+_LOCATIONS = "abcdef"
+_SETS = st.sets(st.sampled_from(_LOCATIONS), min_size=1).map(lambda names: " or ".join(sorted(names)))
+
+
+@st.composite
+def _graphs(draw: st.DrawFn) -> str:
+    """Draw an automaton in which each edge has an event of its own. Each location has a controllable way back."""
+    lines = ["plant p:"]
+    for number, name in enumerate(_LOCATIONS):
+        targets = draw(st.lists(st.sampled_from(_LOCATIONS), min_size=1, max_size=3, unique=True))
+        kinds = ["", *(draw(st.sampled_from(["", "", "un"])) for _ in targets[1:])]
+        lines.insert(1, " ".join(f"{kind}controllable e{number}{to};" for kind, to in zip(kinds, targets, strict=True)))
+        edges = " ".join(f"edge e{number}{to} goto {to};" for to in targets)
+        lines.append(f"location {name}: {'initial; ' if number == 0 else ''}marked; {edges}")
+    return "\n".join([*lines, "end"])
+
+
+@given(
+    _graphs(), _SETS, st.dictionaries(st.sampled_from(["from", "avoid", "stay"]), _SETS), st.none() | st.integers(0, 4)
+)
+@settings(max_examples=examples(100), deadline=None)
+def test_random_graphs_against_an_explicit_search(
+    graph: str, goal: str, named: dict[str, str], bound: int | None
+) -> None:
+    bounds = {} if bound is None else {"bound": bound}
+    arguments = ", ".join([goal, *(f"{name}: {value}" for name, value in {**named, **bounds}.items())])
+    remaining = _remaining(arguments, graph)
+    event("empty" if not remaining else "all" if remaining == _remaining("true", graph) else "some")
 
 
 def test_explain_names_the_whole_path(tmp_path: Path) -> None:
