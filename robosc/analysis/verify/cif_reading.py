@@ -319,7 +319,7 @@ class _GrammarConversion:
 
     def _bound(self, node: Any) -> int:
         value = node.first.value
-        if node.others or type(value).__name__ != "Number":
+        if node.others or type(value).__name__ != "Literal":
             self._fail(node, "a bound is a number")
         return int(value.value)
 
