@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from hypothesis import strategies as st
 
 from robosc.model import sct
-from tests.sct_models import disables, edge, model, needs, plant
+from tests.sct_models import Reachable, disables, edge, model, needs, plant
 
 _ENUMERATIONS = {"E": ["e0", "e1", "e2"], "F": ["f0"]}
 _CONTROLLABLE = ("c_trigger", "c_cancel", "c_reset", "c_tau1")
@@ -67,7 +67,12 @@ def sct_models(
     ]
     conditions = [_boolean(draw, scope, 3) for _ in range(draw(st.sampled_from((0, 1, 2))) if requirements else 0)]
     wanted = [
-        (_boolean(draw, scope, 2), _boolean(draw, scope, 2) if draw(st.booleans()) else None)
+        Reachable(
+            _boolean(draw, scope, 2),
+            _boolean(draw, scope, 2) if draw(st.booleans()) else None,
+            _boolean(draw, scope, 2) if draw(st.booleans()) else None,
+            draw(st.sampled_from((None, None, 0, 1, 2, 3))),
+        )
         for _ in range(draw(st.sampled_from((1, 1, 2) if goals else (0, 0, 1, 2))) if requirements else 0)
     ]
     return model(plants, restrictions, _ENUMERATIONS, invariants=conditions, reachable=wanted)

@@ -22,7 +22,7 @@ import ast
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 from robosc.model import expression as ex
 from robosc.model import sct
@@ -142,6 +142,15 @@ def disables(event: str, condition: str, text: str | None = None) -> _Requiremen
     return _Requirement("disables", event, condition, text)
 
 
+class Reachable(NamedTuple):
+    """A condition that must stay reachable, its premise, the condition of the path, and the bound on its length."""
+
+    condition: str
+    premise: str | None = None
+    along: str | None = None
+    bound: int | None = None
+
+
 def model(
     plants: Sequence[_Plant],
     requirements: Sequence[_Requirement] = (),
@@ -150,11 +159,11 @@ def model(
     name: str = "robot",
     guards: Mapping[str, str | tuple[str | None, str | None]] | None = None,
     invariants: Sequence[str] = (),
-    reachable: Sequence[tuple[str, str | None]] = (),
+    reachable: Sequence[Reachable] = (),
 ) -> sct.SupervisoryControlModel:
     """Return the model. `guards` attaches a supervisor without synthesis: event to requirement part, or both parts.
 
-    `reachable` are conditions that must stay reachable, each with its premise or None.
+    `reachable` are the conditions that must stay reachable.
     """
     scope = _Scope(
         [given_plant.element for given_plant in plants],
@@ -186,11 +195,14 @@ def model(
         ],
         reachabilityRequirements=[
             sct.ReachabilityRequirement(
-                condition=scope.expression(condition, None),
-                premise=None if premise is None else scope.expression(premise, None),
-                text=f"requirement reachable {condition}" + ("" if premise is None else f" from {premise}"),
+                condition=scope.expression(required.condition, None),
+                premise=None if required.premise is None else scope.expression(required.premise, None),
+                pathCondition=None if required.along is None else scope.expression(required.along, None),
+                bound=required.bound,
+                text=f"requirement reachable {required.condition}"
+                + ("" if required.premise is None else f" from {required.premise}"),
             )
-            for condition, premise in reachable
+            for required in reachable
         ],
     )
     if guards is not None:

@@ -83,7 +83,8 @@ def _blocked_from_the_start(system: SynthesizedSystem) -> BlockReason:
     violated = system.violated(start)
     goal = violated[0] if violated else None
     if isinstance(goal, sct.ReachabilityRequirement):
-        path = _path_of_plants(system, system.goals[goal].states)
+        _, states, along, _ = system.goals[goal]
+        path = _path_of_plants(system, states, along)
         unmarked = []
     else:
         goal = None
@@ -106,13 +107,17 @@ def _blocked_from_the_start(system: SynthesizedSystem) -> BlockReason:
     raise AssertionError("the requirements forbid nothing on the way")
 
 
-def _path_of_plants(system: SynthesizedSystem, goal: Diagram) -> Path | None:
-    """Return a shortest path of the plants from an initial state to one of these states; None if there is none."""
-    reached = goal & system.uncontrolled
+def _path_of_plants(system: SynthesizedSystem, goal: Diagram, along: Diagram | None = None) -> Path | None:
+    """Return a shortest path of the plants from an initial state to one of these states; None if there is none.
+
+    The path leads through states of `along` only; None: through all.
+    """
+    within = system.diagrams.true if along is None else along
+    reached = goal & within & system.uncontrolled
     if not reached.satisfiable():  # The search would visit all states, layer by layer.
         return None
     encoding = system.encoding
-    return shortest_path(encoding, system.plant_moves, encoding.initial, reached, system.diagrams.true)
+    return shortest_path(encoding, system.plant_moves, encoding.initial, reached, within)
 
 
 def _described(

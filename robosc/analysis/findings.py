@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.analysis.blocking_in_words import counterexample_in_words, way_out
 from robosc.analysis.causes import causes, with_causes
+from robosc.analysis.given_supervisor import flaw_in_words
 from robosc.analysis.observations import Forbidden
 from robosc.analysis.wording import (
     condition,
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from robosc.analysis.causes import Absent
+    from robosc.analysis.given_supervisor import Flaw
     from robosc.analysis.observations import (
         Example,
         ForbiddenCancel,
@@ -77,6 +79,7 @@ def findings_of(model: sct.SupervisoryControlModel, observations: Observations) 
                 for plant in observations.unused_assumptions
                 if not _of_library(plant, model)
             ),
+            *map(words_for.given_supervisor, observations.flaws),
         ]
     )
 
@@ -244,6 +247,14 @@ class _Findings:
             f"`{first}` and `{second}` use one server, and both can be under way at the same time: after "
             f"{in_words(observed.trace, self._model)}{_likewise(second, observed.others)}",
             f"let the requirements keep `{second}` from starting while `{first}` is running",
+        )
+
+    def given_supervisor(self, flaw: Flaw) -> Diagnostic:
+        return _finding(
+            flaw.requirement or self._model,
+            "given-supervisor",
+            f"the supervisor of the specification does not suffice: {flaw_in_words(flaw, self._model)}",
+            "correct this supervisor, or take the one that synthesis completes: `robosc transform`",
         )
 
     def provide_gap(self, observed: ProvideGap) -> Diagnostic:

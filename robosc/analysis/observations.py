@@ -9,6 +9,7 @@ from itertools import islice
 from typing import TYPE_CHECKING, TypeVar
 
 from robosc.analysis.blocking import BlockingCounterexample, blocking_counterexample, never_ready, requirements_at_fault
+from robosc.analysis.given_supervisor import flaws
 from robosc.analysis.paths import Layers, Path
 from robosc.model import sct
 from robosc.model.semantics.communication import RUNNING
@@ -19,6 +20,7 @@ from robosc.synthesis.encoding import pick
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
+    from robosc.analysis.given_supervisor import Flaw
     from robosc.analysis.paths import TraceStep
     from robosc.analysis.system import SynthesizedSystem
     from robosc.synthesis.bdd import Diagram
@@ -188,7 +190,8 @@ class Observations:
 
     `unrestricted_calls` are triggers of services and actions that can happen, have no requirement, and involve no other
     plant than their own. `unused_assumptions` are those that none of their events could violate, one for each text.
-    `counterexamples` explain events that synthesis restricts; large models may lack some of them.
+    `counterexamples` explain events that synthesis restricts; large models may lack some of them. `flaws` are those of
+    a supervisor that the model already has.
     """
 
     never_enabled: tuple[NeverEnabled, ...]
@@ -202,6 +205,7 @@ class Observations:
     unreachable_states: tuple[UnreachableState, ...]
     unused_assumptions: tuple[sct.Plant, ...]
     counterexamples: Mapping[sct.Event, BlockingCounterexample]
+    flaws: tuple[Flaw, ...] = ()
 
 
 class Observer:
@@ -227,6 +231,7 @@ class Observer:
             tuple(self._unreachable_states()),
             tuple(self._unused_assumptions()),
             dict(self._affordable_counterexamples()),
+            flaws(self._system, self._system.solution.rounds[0]) if self._system.model.supervised else (),
         )
 
     def weights(self) -> Iterator[Weight]:

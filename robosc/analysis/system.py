@@ -21,7 +21,7 @@ from robosc.model.semantics.definition import named_state
 from robosc.model.semantics.roles import Roles, plant_of
 from robosc.synthesis.bdd import and_exists
 from robosc.synthesis.decoding import value
-from robosc.synthesis.fixpoint import Search, completed, coreachable, reachable, supervise_forwards
+from robosc.synthesis.fixpoint import Search, completed, reachable, reaching, supervise_forwards
 from robosc.synthesis.relation import event_relations, goals, plant_moves, required_moves, steps, violations
 from robosc.synthesis.run_to_completion import Completion, completion, internal_events
 
@@ -228,12 +228,17 @@ class SynthesizedSystem(SupervisedSystem):
 
     def _unreachable_goals(self, codes: Codes) -> tuple[sct.StatedRequirement, ...]:
         """Return the requirements with a premise that holds in a state and a goal that it cannot reach."""
-        here = self.encoding.state(codes)
-        due = {required: goal.states for required, goal in self.goals.items() if self.is_in(codes, goal.premise)}
+        here, moves = self.encoding.state(codes), steps(self.moves)
+        due = {required: goal for required, goal in self.goals.items() if self.is_in(codes, goal.premise)}
         if not due:
             return ()
-        onwards = reachable(self.diagrams, steps(self.moves), here, self.solution.rounds.alive[0] | here)
-        return tuple(required for required, states in due.items() if not (onwards & states).satisfiable())
+        onwards = reachable(self.diagrams, moves, here, self.solution.rounds.alive[0] | here)
+        return tuple(
+            required
+            for required, goal in due.items()
+            if not (onwards & goal.states).satisfiable()
+            or not (here & reaching(self.diagrams, moves, goal, onwards)).satisfiable()
+        )
 
     def stranded(self, required: sct.ReachabilityRequirement) -> Diagram:
         """Return the states with the premise of a requirement that cannot reach its goal.
@@ -241,7 +246,7 @@ class SynthesizedSystem(SupervisedSystem):
         They are reachable under the requirements that restrict events.
         """
         goal, reached = self.goals[required], self.solution.reached
-        return reached & goal.premise & ~coreachable(self.diagrams, steps(self.moves), goal.states & reached, reached)
+        return reached & goal.premise & ~reaching(self.diagrams, steps(self.moves), goal, reached)
 
     def permitted(self, event: sct.Event) -> Diagram:
         """Return the states, and inputs of a command, in which the requirements permit an event."""

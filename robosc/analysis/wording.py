@@ -136,7 +136,10 @@ def goal_in_words(requirement: sct.StatedRequirement) -> str | None:
     """Return the states that a requirement wants to be reachable: "state with `Base.docked`"; None for other kinds."""
     if not isinstance(requirement, sct.ReachabilityRequirement):
         return None
-    return f"state with `{RobotPrinter()(requirement.condition)}`"
+    along, bound = requirement.pathCondition, requirement.bound
+    goal = f"state with `{RobotPrinter()(requirement.condition)}`"
+    goal += "" if bound is None else f" in at most {bound:,} event{'' if bound == 1 else 's'}"
+    return goal if along is None else f"{goal} through states with `{RobotPrinter()(along)}` only"
 
 
 def _forbid(requirements: Sequence[sct.StatedRequirement]) -> str:

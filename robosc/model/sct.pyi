@@ -18,7 +18,8 @@ class SupervisoryControlModel(expression.NamedElement):
     durations: MutableSequence[Duration]
     initialPredicates: MutableSequence[expression.Expression]
     markerPredicates: MutableSequence[expression.Expression]
-    def __init__(self, *, enumerations: Iterable[expression.Enumeration] = ..., plants: Iterable[Plant] = ..., requirements: Iterable[Requirement] = ..., invariants: Iterable[StateInvariant] = ..., reachabilityRequirements: Iterable[ReachabilityRequirement] = ..., properties: Iterable[Property] = ..., supervisor: Supervisor | None = ..., durations: Iterable[Duration] = ..., initialPredicates: Iterable[expression.Expression] = ..., markerPredicates: Iterable[expression.Expression] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
+    supervised: bool | None
+    def __init__(self, *, enumerations: Iterable[expression.Enumeration] = ..., plants: Iterable[Plant] = ..., requirements: Iterable[Requirement] = ..., invariants: Iterable[StateInvariant] = ..., reachabilityRequirements: Iterable[ReachabilityRequirement] = ..., properties: Iterable[Property] = ..., supervisor: Supervisor | None = ..., durations: Iterable[Duration] = ..., initialPredicates: Iterable[expression.Expression] = ..., markerPredicates: Iterable[expression.Expression] = ..., supervised: bool | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Plant(expression.NamedElement):
     """An automaton with variables. The guards of a location's edges with one event exclude each other. The guards of an uncontrollable event from CIF may overlap; then each enabled edge is possible."""
@@ -147,10 +148,12 @@ class StateInvariant(StatedRequirement):
     def __init__(self, *, condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
 
 class ReachabilityRequirement(StatedRequirement):
-    """From each reachable state with the premise, the supervised system can reach a state with the condition. Some values of the inputs suffice."""
+    """From each reachable state with the premise, the supervised system can reach a state with the condition, by a path whose states satisfy `pathCondition`, in at most `bound` events. Some values of the inputs suffice."""
     condition: expression.Expression
     premise: expression.Expression | None
-    def __init__(self, *, condition: expression.Expression | None = ..., premise: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+    pathCondition: expression.Expression | None
+    bound: int | None
+    def __init__(self, *, condition: expression.Expression | None = ..., premise: expression.Expression | None = ..., pathCondition: expression.Expression | None = ..., bound: int | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Property(StatedRequirement):
     """A claim about the supervised system that verification proves. Synthesis does not enforce it."""

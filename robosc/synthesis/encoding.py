@@ -488,7 +488,8 @@ def couplings_of(model: sct.SupervisoryControlModel, index: Mapping[Element, int
         touched.setdefault(requirement.event, {}).update(dict.fromkeys(referenced_elements(requirement.condition)))
     conditions = [invariant.condition for invariant in model.invariants]
     for required in model.reachabilityRequirements:
-        conditions += [required.condition, *([] if required.premise is None else [required.premise])]
+        parts = (required.condition, required.premise, required.pathCondition)
+        conditions += [part for part in parts if part is not None]
     conditions += [*model.initialPredicates, *model.markerPredicates]
     together = [*touched.values(), *(dict.fromkeys(referenced_elements(condition)) for condition in conditions)]
     return [sorted(elements, key=index.__getitem__) for elements in together]

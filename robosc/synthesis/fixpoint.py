@@ -8,7 +8,7 @@ part that it touches, not on the whole set.
 The synthesis algorithm is that of Ouedraogo, Kumar, Malik, Åkesson: Nonblocking and safe control of discrete-event
 systems modeled as extended finite automata, T-ASE 2011, on reachable states only. Other states can be goals beside the
 marked ones, as in Queiroz, Cury, Wonham: Multitasking supervisory control of discrete-event systems, Discrete Event
-Dynamic Systems 2005. A goal may apply to some states only.
+Dynamic Systems 2005. A goal may apply to some states only, and restrict the states and the length of the path to it.
 """
 
 from __future__ import annotations
@@ -355,13 +355,38 @@ def _coreaching(
     return _Saturation(diagrams, steps, forwards=False).closure(states, within)
 
 
+def reaching(diagrams: Diagrams, steps: Sequence[SymbolicStep], goal: Goal, within: Diagram) -> Diagram:
+    """Return the states from which the steps reach a goal, by a path that the goal allows, without leaving `within`."""
+    return completed(_reaching_goal(diagrams, steps, goal, within))
+
+
+def _reaching_goal(
+    diagrams: Diagrams, steps: Sequence[SymbolicStep], goal: Goal, within: Diagram
+) -> Computation[Diagram]:
+    if goal.along is not None:
+        within &= goal.along
+    states = goal.states & within
+    if goal.bound is None:
+        return (yield from _coreaching(diagrams, steps, states, within))
+    latest = states
+    for _ in range(goal.bound):
+        diagrams.statistics.operations += len(steps)
+        diagrams.tidy()
+        yield
+        latest = diagrams.any_of(step.preimage(latest) for step in steps) & within & ~states
+        if not latest.satisfiable():
+            break
+        states |= latest
+    return states
+
+
 def _keeping_alive(search: Search, allowed: Diagram) -> Computation[Diagram]:
     """Return the largest set of allowed states in which each state reaches its goals within the set."""
     goals, unchanged = search.all_goals, 0
     while True:
         for goal in goals:
-            reaching = yield from _coreaching(search.diagrams, search.steps, goal.states & allowed, allowed)
-            alive = reaching if goal.premise.valid() else allowed & (reaching | ~goal.premise)
+            reached = yield from _reaching_goal(search.diagrams, search.steps, goal, allowed)
+            alive = reached if goal.premise.valid() else allowed & (reached | ~goal.premise)
             unchanged = unchanged + 1 if alive == allowed else 1
             allowed = alive
             if unchanged >= len(goals):

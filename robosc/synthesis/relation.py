@@ -22,10 +22,16 @@ if TYPE_CHECKING:
 
 
 class Goal(NamedTuple):
-    """States that must stay reachable from each state with the premise. The marked states are one for all states."""
+    """States that must stay reachable from each state with the premise. The marked states are one for all states.
+
+    Each state of the path, both ends included, is in `along`; None: all states. `bound` is its maximum number of
+    events; None: any number.
+    """
 
     premise: Diagram
     states: Diagram
+    along: Diagram | None = None
+    bound: int | None = None
 
 
 @dataclass(frozen=True)
@@ -386,10 +392,16 @@ def violations(
 
 def goals(model: sct.SupervisoryControlModel, encoding: Encoding) -> dict[sct.ReachabilityRequirement, Goal]:
     """Return the goal of each requirement that demands one."""
-    return {
-        required: Goal(encoding.holds(required.premise), encoding.holds(required.condition))
-        for required in model.reachabilityRequirements
-    }
+    return {required: goal(required, encoding) for required in model.reachabilityRequirements}
+
+
+def goal(required: sct.ReachabilityRequirement, encoding: Encoding) -> Goal:
+    """Return the goal of a requirement. It concerns only states that satisfy the condition of its path."""
+    premise, states = encoding.holds(required.premise), encoding.holds(required.condition)
+    if required.pathCondition is None:
+        return Goal(premise, states, bound=required.bound)
+    along = encoding.holds(required.pathCondition)
+    return Goal(premise & along, states, along, required.bound)
 
 
 def requirements_by_event(requirements: Iterable[sct.Requirement]) -> dict[sct.Event, list[sct.Requirement]]:

@@ -39,6 +39,8 @@ from robosc.tools.cli import main
 from tests.analysis.verify.explicit import Explicit
 from tests.language.second_edition import errors
 from tests.random_sct import sct_models
+from tests.sct_models import Reachable, edge, plant
+from tests.sct_models import model as model_of
 from tests.searching import examples
 from tests.synthesis.oracle import Oracle, State
 
@@ -513,12 +515,15 @@ def test_verify_against_an_explicit_search(model: sct.SupervisoryControlModel, i
         return explicit.oracle.value(condition, state, {})
 
     def is_stranded(state: State, required: sct.ReachabilityRequirement) -> bool:
-        onwards, pending = {state}, [state]
-        for here in pending:
-            fresh = {after for _, after in explicit.moves(here)} - onwards
-            onwards |= fresh
-            pending += fresh
-        return holds(required.premise, state) and not any(holds(required.condition, after) for after in onwards)
+        latest = onwards = {state} if holds(required.pathCondition, state) else set()
+        steps = 0
+        while latest and steps != required.bound:
+            after = {after for here in latest for _, after in explicit.moves(here)} - onwards
+            latest = {state for state in after if holds(required.pathCondition, state)}
+            onwards = onwards | latest
+            steps += 1
+        is_due = bool(onwards) and holds(required.premise, state)
+        return is_due and not any(holds(required.condition, after) for after in onwards)
 
     def look(encoding: Encoding) -> list[Verdict]:
         system = GuardedSystem(model, encoding)
@@ -528,3 +533,36 @@ def test_verify_against_an_explicit_search(model: sct.SupervisoryControlModel, i
         is_refuted = any(is_stranded(state, required) for state in explicit.states)
         assert verdict.outcome is (Outcome.REFUTED if is_refuted else Outcome.PROVED)
         assert not (is_refuted and is_complete)
+
+
+@pytest.mark.parametrize(
+    ("along", "bound", "arguments", "left"),
+    [
+        ("p.a or p.c", 1, "p.c, stay: p.a or p.c, bound: 1", 3),
+        (None, 1, "p.c, bound: 1", 2),
+        ("p.a or p.c", None, "p.c, stay: p.a or p.c", 3),
+    ],
+)
+def test_the_path_is_written_and_read_again(
+    tmp_path: Path, along: str | None, bound: int | None, arguments: str, left: int
+) -> None:
+    locations = {
+        "a": [edge("c_trigger", "b"), edge("c_tau1", "c")],
+        "b": [edge("c_reset", "a")],
+        "c": [edge("c_reset", "a")],
+    }
+    events = ["c_trigger", "c_tau1", "c_reset"]
+    made = model_of(
+        [plant("p", locations, controllable=events, marked=["a", "b", "c"])],
+        (),
+        reachable=[Reachable("p.c", None, along, bound)],
+    )
+    made.supervisor = synthesize(made).supervisor
+    files = cif.generate(Models(made), Configuration())
+    assert f"@@requirement:reachable({arguments})" in files["robot.cif"]
+    (tmp_path / "robot.cif").write_text(files["robot.cif"])
+    assert made.supervisor.controlledStates == left
+    assert count(read_cif(tmp_path / "robot.cif").model).controlled_states == left
+    assert validate_cif(made, files).outcome is Outcome.PROVED
+    made.reachabilityRequirements[0].bound = 9
+    assert "has another bound in" in validate_cif(made, files).explanation

@@ -36,7 +36,7 @@ def test_a_model_reads_like_its_metamodel() -> None:
         "robot.sct.xmi": """\
 <?xml version="1.0" encoding="UTF-8"?>
 <sct:SupervisoryControlModel xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xmlns:expression="urn:robosc:expression:1" xmlns:sct="urn:robosc:sct:1"
-    name="robot">
+    name="robot" supervised="false">
   <plants name="machine" kind="behaviour">
     <events name="start" controllable="true" kind="trigger"/>
     <variables name="n">

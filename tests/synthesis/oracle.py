@@ -201,8 +201,15 @@ class Oracle:
             good = {state for state in good if not self.violates(state)}
             good &= reaching(good, next_states, self.is_marked)
             for required in self.model.reachabilityRequirements:
-                reach = reaching(good, next_states, lambda state, goal=required: self.value(goal.condition, state, {}))
-                good = {state for state in good if state in reach or not self.value(required.premise, state, {})}
+                along = {state for state in good if self.value(required.pathCondition, state, {})}
+                reach = reaching(
+                    along,
+                    next_states,
+                    lambda state, goal=required: self.value(goal.condition, state, {}),
+                    required.bound,
+                )
+                due = {state for state in along if self.value(required.premise, state, {})}
+                good -= due - reach
             good = {
                 state
                 for state in good
@@ -219,12 +226,19 @@ class Oracle:
 
 
 def reaching(
-    states: set[State], next_states: dict[State, list[tuple[sct.Event, State]]], is_goal: Callable[[State], bool]
+    states: set[State],
+    next_states: dict[State, list[tuple[sct.Event, State]]],
+    is_goal: Callable[[State], bool],
+    bound: int | None = None,
 ) -> set[State]:
-    """Return the states that reach a goal without leaving the set."""
+    """Return the states that reach a goal in at most `bound` events without leaving the set."""
     found = {state for state in states if is_goal(state)}
-    while more := {s for s in states - found if any(after in found for _, after in next_states[s])}:
+    steps = 0
+    while steps != bound and (
+        more := {s for s in states - found if any(after in found for _, after in next_states[s])}
+    ):
         found |= more
+        steps += 1
     return found
 
 

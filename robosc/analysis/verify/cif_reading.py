@@ -305,7 +305,7 @@ class _GrammarConversion:
         return invariant
 
     def _reachability_requirement(self, node: Any) -> sct.ReachabilityRequirement:
-        last = node.premise or node.condition
+        last = node.bound or node.pathCondition or node.premise or node.condition
         closings = (last.others[-1].operand if last.others else last.first).closings
         if [closing.token for closing in closings][-1:] != [")"]:
             self._fail(node, "the annotation has no closing parenthesis")
@@ -313,7 +313,15 @@ class _GrammarConversion:
         return sct.ReachabilityRequirement(
             condition=self._condition(node.condition, None),
             premise=self._condition(node.premise, None) if node.premise else None,
+            pathCondition=self._condition(node.pathCondition, None) if node.pathCondition else None,
+            bound=self._bound(node.bound) if node.bound else None,
         )
+
+    def _bound(self, node: Any) -> int:
+        value = node.first.value
+        if node.others or type(value).__name__ != "Literal":
+            self._fail(node, "a bound is a number")
+        return int(value.value)
 
     def _exclusion(self, node: Any) -> sct.Requirement:
         return sct.Requirement(

@@ -190,11 +190,21 @@ class _Comparison:
             return refute(PROPERTY, f"{self._text} has {count} about reachable states, the model has {len(required)}")
         valid = encoding.diagrams.all_of(encoding.in_domain(domain.element) for domain in self._layout.state)
         for ours, other in zip(required, self._their_goals, strict=True):
-            for part, counterpart in ((ours.condition, other.condition), (ours.premise, other.premise)):
+            if ours.bound != other.bound:
+                return refute(PROPERTY, f"a requirement about reachable states has another bound in {self._text}")
+            for part, counterpart in (
+                (ours.condition, other.condition),
+                (ours.premise, other.premise),
+                (ours.pathCondition, other.pathCondition),
+            ):
                 differ = (encoding.holds(part) ^ theirs.holds(counterpart)) & valid
                 if differ.satisfiable():
                     codes = pick(differ, self._layout.state)
-                    elements = [*referenced_elements(ours.condition), *referenced_elements(ours.premise)]
+                    elements = [
+                        *referenced_elements(ours.condition),
+                        *referenced_elements(ours.premise),
+                        *referenced_elements(ours.pathCondition),
+                    ]
                     shown = system.where(codes, elements)
                     return refute(PROPERTY, f"a requirement about reachable states differs in the state `{shown}`")
         return None

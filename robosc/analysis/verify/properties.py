@@ -10,12 +10,13 @@ from functools import partial
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from robosc.analysis.given_supervisor import flaw_in_words, flaws, states_of_given_supervisor
 from robosc.analysis.paths import TraceStep
 from robosc.analysis.system import format_count
 from robosc.analysis.verify.loop import LoopModel, require_loop_states
 from robosc.analysis.verify.response import bounded_response, confluence, finite_response
 from robosc.analysis.verify.verdict import Outcome, Verdict, trace_step
-from robosc.analysis.wording import in_words, join_with_and, name, words
+from robosc.analysis.wording import goal_in_words, in_words, join_with_and, name, words
 from robosc.model import expression as ex
 from robosc.model import sct
 from robosc.model.places import place
@@ -24,8 +25,8 @@ from robosc.model.semantics.roles import event_name, is_from_cif, plant_of
 from robosc.model.semantics.walks import copy_tree
 from robosc.synthesis.decoding import value
 from robosc.synthesis.encoding import pick, referenced_elements
-from robosc.synthesis.fixpoint import Search, completed, coreachable, supervise_forwards
-from robosc.synthesis.relation import required_moves, steps
+from robosc.synthesis.fixpoint import Search, completed, coreachable, reaching, supervise_forwards
+from robosc.synthesis.relation import Goal, required_moves, steps
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -60,6 +61,7 @@ def properties(system: GuardedSystem) -> list[Callable[[], Verdict]]:
     return [
         partial(non_blocking, system),
         partial(controllability, system),
+        *([partial(given_supervisor, system)] if system.model.supervised else []),
         *([] if stepwise else [partial(input_enabledness, system)]),
         *(partial(_examine_statement, requirement_holds, system, statement) for statement in written),
         *([partial(ranges, system)] if len(written) < len(system.model.requirements) else []),
@@ -111,6 +113,15 @@ def controllability(system: GuardedSystem) -> Verdict:
 
     evidence = f"{system.size}, {format_count(len(uncontrollable), 'uncontrollable event')}"
     return _nowhere("controllability", system, evidence, forbidden, explanation)
+
+
+def given_supervisor(system: GuardedSystem) -> Verdict:
+    """Check that the supervisor in the text needs no addition: it is controllable, non-blocking and safe by itself."""
+    question, reached = "given supervisor", states_of_given_supervisor(system)
+    evidence = format_count(system.encoding.count(reached), "state")
+    for flaw in flaws(system, reached):
+        return Verdict(question, Outcome.REFUTED, evidence, flaw_in_words(flaw, system.model), flaw.trace)
+    return Verdict(question, Outcome.PROVED, evidence)
 
 
 def input_enabledness(system: GuardedSystem) -> Verdict:
@@ -240,14 +251,18 @@ def claim_holds(system: GuardedSystem, claimed: sct.Property) -> Verdict:
 
 def goal_reachable(system: GuardedSystem, claimed: sct.ReachabilityProperty | sct.ReachabilityRequirement) -> Verdict:
     """Check that every reachable state with the premise can reach a state with the condition."""
-    states = system.controlled
-    start, goal = states & system.encoding.holds(claimed.premise), states & system.encoding.holds(claimed.condition)
-    stuck = {claimed: start & ~coreachable(system.diagrams, steps(system.moves), goal, states)}
+    states, holds = system.controlled, system.encoding.holds
     condition_text = RobotPrinter()(claimed.condition)
+    if isinstance(claimed, sct.ReachabilityRequirement):
+        goal, target = system.goals[claimed], goal_in_words(claimed)
+    else:
+        goal, target = Goal(holds(claimed.premise), holds(claimed.condition)), f"state with `{condition_text}`"
+    start = states & goal.premise
+    stuck = {claimed: start & ~reaching(system.diagrams, steps(system.moves), goal, states)}
 
     def explanation(_: object, path: Path) -> str:
         elements = [*referenced_elements(claimed.premise), *referenced_elements(claimed.condition)]
-        return f"from `{system.where(path.states[-1], elements)}` no state with `{condition_text}` can be reached"
+        return f"from `{system.where(path.states[-1], elements)}` no {target} can be reached"
 
     origin = format_count(system.encoding.count(start), "state")
     return _nowhere(requirement_name(claimed), system, f"from {origin} to `{condition_text}`", stuck, explanation)

@@ -44,11 +44,8 @@ class CifReading:
     texts: dict[str, str]
 
 
-def read(path: Path | str, documents: Documents | None = None, *, supervised: bool = False) -> CifReading:
-    """Read a specification and all that it imports. Raises OSError if the file itself cannot be read.
-
-    Supervisor automata are rejected or, if the specification may be `supervised`, read as plants.
-    """
+def read(path: Path | str, documents: Documents | None = None) -> CifReading:
+    """Read a specification and all that it imports. Raises OSError if the file itself cannot be read."""
     files = _Files(Path(path), documents or Documents())
     if has_errors(files.findings):
         return CifReading(None, in_order(files.findings), files.texts)
@@ -56,7 +53,8 @@ def read(path: Path | str, documents: Documents | None = None, *, supervised: bo
     for specification in files.specifications:
         names.add(specification)
     names.make_instances()
-    model = to_sct(names, Path(path).name.removesuffix(".cif"), supervised=supervised)
+    # The name becomes an identifier in generated code, also that of `model.supervised.cif`.
+    model = to_sct(names, Path(path).name.removesuffix(".cif").replace(".", "_"))
     findings = in_order([*files.findings, *names.findings])
     if names.findings:
         return CifReading(None, findings, files.texts)
@@ -83,7 +81,7 @@ def read_supervised(model: sct.SupervisoryControlModel, text: str, own_text: str
         documents.read(own)
     except OSError:
         return None
-    return read(beside, documents, supervised=True)
+    return read(beside, documents)
 
 
 class _Files:

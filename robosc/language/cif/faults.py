@@ -34,7 +34,6 @@ class CifFaultError(Exception):
 
 #: Hints for constructs that a transformation of CIF's `cif2cif` eliminates.
 CONDITIONAL_UPDATES = "CIF's `cif2cif -t elim-if-updates` removes them"
-SUPERVISORS = "CIF's `cif2cif -t relabel-supervisors-as-plants` converts them to plants"
 TAU = "CIF's `cif2cif -t elim-tau-event` adds an event: declare it as `uncontrollable`"
 
 

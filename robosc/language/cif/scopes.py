@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from robosc.base.diagnostics import Diagnostic
     from robosc.model import expression as ex
 
+#: Kinds of automata that restrict the plants instead of being one.
+RESTRICTIONS = ("requirement", "supervisor")
 #: Maximum number of groups, automata and instances of a specification.
 _MOST = 20_000
 _LISTS = {
@@ -295,7 +297,7 @@ class Specification:
     def _automaton(self, scope: Scope, node: Any) -> None:
         """Declare an automaton or an instance of one, including its locations, which are names too."""
         scope.kind = node.kind or ""
-        plant_kind = sct.PlantKind.requirement if node.kind == "requirement" else sct.PlantKind.behaviour
+        plant_kind = sct.PlantKind.requirement if node.kind in RESTRICTIONS else sct.PlantKind.behaviour
         scope.plant = sct.Plant(name=scope.path, kind=plant_kind, source=place_of(scope.node))
         self._declare(scope, node)
         for number, location in enumerate(node.locations):

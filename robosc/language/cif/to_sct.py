@@ -2,8 +2,8 @@
 
 Implicit rules of CIF's synthesis become explicit. An automaton that monitors an event stays in its location if it has
 no edge for the event. A requirement automaton monitors all of its events, and its restrictions become requirements on
-its locations. A requirement forbids each edge that would assign a value out of range. An input variable becomes a
-variable to which an uncontrollable event assigns any value.
+its locations. Supervisors of the text are requirements. A requirement forbids each edge that would assign a value out
+of range. An input variable becomes a variable to which an uncontrollable event assigns any value.
 """
 
 from __future__ import annotations
@@ -14,7 +14,6 @@ from robosc.language.cif import plant_invariants
 from robosc.language.cif.channels import VOID, Channels, EventEdge, at, sent_value
 from robosc.language.cif.faults import (
     CONDITIONAL_UPDATES,
-    SUPERVISORS,
     TAU,
     CifFaultError,
     construct,
@@ -23,7 +22,8 @@ from robosc.language.cif.faults import (
     text_of,
 )
 from robosc.language.cif.parsing import identifier
-from robosc.language.cif.scopes import Declaration, Scope, Specification, plain
+from robosc.language.cif.reachability import reachability_requirement
+from robosc.language.cif.scopes import RESTRICTIONS, Declaration, Scope, Specification, plain
 from robosc.language.cif.static_values import constant_value, default, literal
 from robosc.language.cif.values import Values, computed_from_itself
 from robosc.language.syntax_messages import closest, offer_name
@@ -42,18 +42,14 @@ if TYPE_CHECKING:
     from robosc.language.cif.static_values import TypedNode
 
 
-def to_sct(names: Specification, name: str, *, supervised: bool = False) -> sct.SupervisoryControlModel:
-    """Return the sct model of a specification; its faults are added to the findings of `names`.
-
-    If the specification may be `supervised`, supervisor automata become plants.
-    """
-    return _CifToSct(names, name, supervised=supervised).model
+def to_sct(names: Specification, name: str) -> sct.SupervisoryControlModel:
+    """Return the sct model of a specification; its faults are added to the findings of `names`."""
+    return _CifToSct(names, name).model
 
 
 class _CifToSct:
-    def __init__(self, names: Specification, name: str, *, supervised: bool) -> None:
+    def __init__(self, names: Specification, name: str) -> None:
         self._names = names
-        self._supervised = supervised
         self._values = Values(names)
         self.model = sct.SupervisoryControlModel(name=name)
         self._event_edges: dict[Scope, list[EventEdge]] = {}
@@ -89,9 +85,8 @@ class _CifToSct:
 
     def _declare(self, scope: Scope) -> None:
         """Create the events, variables and inputs of a scope."""
-        if scope.kind == "supervisor" and not self._supervised:
-            with self._names.reporting():
-                raise construct(scope.node, "supervisor automata", SUPERVISORS)
+        if scope.kind == "supervisor":
+            self.model.supervised = True
         if scope.kind == "":
             with self._names.reporting():
                 raise construct(scope.node, "automata of no kind", "write `plant` or `requirement` before it")
@@ -221,7 +216,7 @@ class _CifToSct:
         watched = self._events(scope, "Monitor")
         if watched == []:
             watched = used
-        requirement = scope.kind == "requirement"
+        requirement = scope.kind in RESTRICTIONS
         for event in used:
             edges = [edge for edge in taken if edge.event is event]
             self._place(edges, event, scope, watching=requirement or event in (watched or ()))
@@ -387,7 +382,7 @@ class _CifToSct:
                 condition=disjunction(allowed) or ex.BooleanLiteral(value=False),
                 automaton=plant,
                 name=scope.path,
-                text=f"requirement {scope.path}",
+                text=f"{scope.kind} {scope.path}",
                 source=place_of(scope.node),
             )
         )
@@ -436,39 +431,12 @@ class _CifToSct:
         for annotation in (annotation for body in scope.bodies for annotation in getattr(body, "annotations", ())):
             if type(annotation).__name__ == "Reachable":
                 with self._names.reporting():
-                    self._reachability_requirement(annotation, scope)
+                    required = reachability_requirement(annotation, scope, self._values)
+                    required.text, required.source = _words(annotation), place_of(annotation)
+                    self.model.reachabilityRequirements.append(required)
         for location, element in _elements(scope):
             with self._names.reporting():
                 self._element(element, location, scope)
-
-    def _reachability_requirement(self, node: Any, scope: Scope) -> None:
-        """Translate an annotation that requires states to be reachable; its names are those of the scope's inside."""
-        is_outermost = type(node.parent).__name__ == "Specification"
-        if node.name.startswith("@@") != is_outermost:
-            sign = "two `@` before the first declaration" if is_outermost else "one `@` before a group or an automaton"
-            raise CifFaultError(node, "cif-construct", f"`{node.name}` stands in a wrong place", f"write {sign}")
-        arguments: dict[str | None, Any] = {}
-        for argument in node.arguments:
-            if argument.name not in (None, "from"):
-                hint = f"leave out `{argument.name}`, or write it as another requirement"
-                raise construct(argument, f"the argument `{argument.name}` of `{node.name}`", hint)
-            if argument.name in arguments:
-                raise CifFaultError(
-                    argument, "cif-construct", f"`{node.name}` has this argument twice", "leave one out"
-                )
-            arguments[argument.name] = argument.value
-        if None not in arguments:
-            message = f"`{node.name}` has no condition"
-            raise CifFaultError(node, "cif-construct", message, "write the condition as its first argument")
-        premise = arguments.get("from")
-        self.model.reachabilityRequirements.append(
-            sct.ReachabilityRequirement(
-                condition=self._values.condition([arguments[None]], scope),
-                premise=None if premise is None else self._values.condition([premise], scope),
-                text=_words(node),
-                source=place_of(node),
-            )
-        )
 
     def _element(self, node: Any, location: sct.Location, scope: Scope) -> None:
         match type(node).__name__:
@@ -487,11 +455,11 @@ class _CifToSct:
                     (self.model.initialPredicates if initial else self.model.markerPredicates).append(implication)
 
     def _invariants(self, node: Any, scope: Scope, location: sct.Location | None) -> None:
-        if node.kind not in ("plant", "requirement"):
-            if node.kind:
-                raise construct(node, "supervisor invariants", SUPERVISORS)
+        if not node.kind:
             what = "invariants of no kind"
             raise construct(node, what, "write `requirement` before it, or `plant` if the system itself ensures it")
+        if node.kind == "supervisor":
+            self.model.supervised = True
         for invariant in node.invariants:
             with self._names.reporting():
                 self._invariant(invariant, node.kind == "plant", scope, location)

@@ -76,9 +76,14 @@ class _SctToCif:
             condition = self._condition(invariant.condition)
             model.invariants.append(sct.StateInvariant(name=invariant.name, text=invariant.text, condition=condition))
         for required in self._model.reachabilityRequirements:
-            condition, premise = self._condition(required.condition), self._condition(required.premise)
             model.reachabilityRequirements.append(
-                sct.ReachabilityRequirement(text=required.text, condition=condition, premise=premise)
+                sct.ReachabilityRequirement(
+                    text=required.text,
+                    condition=self._condition(required.condition),
+                    premise=self._condition(required.premise),
+                    pathCondition=self._condition(required.pathCondition),
+                    bound=required.bound,
+                )
             )
         if self._model.supervisor is not None:
             model.supervisor = self._supervisor(self._model.supervisor)

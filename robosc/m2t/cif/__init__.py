@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from robosc.m2t.models import Models
     from robosc.model import sct
 
-#: First versions of CIF's tools that know a requirement about reachable states, without and with a premise.
-_REACHABLE, _REACHABLE_FROM = 10, 13
+#: First versions of CIF's tools that know a requirement about reachable states, without and with named arguments.
+_REACHABLE, _REACHABLE_NAMED = 10, 13
 _NAME = re.compile("[A-Za-z_][A-Za-z0-9_]*")
 
 
@@ -58,11 +58,13 @@ def preconditions(models: Models, _configuration: Configuration) -> list[Diagnos
 
 
 def _version_warning(required: sct.ReachabilityRequirement) -> Diagnostic:
-    """Return the warning that older tools ignore a requirement or reject its premise."""
-    version = _REACHABLE if required.premise is None else _REACHABLE_FROM
+    """Return the warning that older tools ignore a requirement or reject its named arguments."""
+    parts = {"from": required.premise, "stay": required.pathCondition, "bound": required.bound}
+    named = [f"`{name}`" for name, part in parts.items() if part is not None]
+    version = _REACHABLE_NAMED if named else _REACHABLE
     message = "tools of CIF before version 10 ignore this requirement in the file without a supervisor"
-    if required.premise is not None:
-        message += ", and those before version 13 reject its `from`"
+    if named:
+        message += f", and those before version 13 reject its {' and '.join(named)}"
     hint = f"synthesize that file with CIF {version} or later; the supervised file is right for every version"
     return Diagnostic(*place(required), Severity.WARNING, "cif", message, hint)
 

@@ -109,8 +109,11 @@ class Writer:
         """Return the annotations of the specification that are requirements, each after its text."""
         for required in self._model.reachabilityRequirements:
             arguments = [self._outside(required.condition)]
-            if required.premise is not None:
-                arguments.append(f"from: {self._outside(required.premise)}")
+            for name, part in (("from", required.premise), ("stay", required.pathCondition)):
+                if part is not None:
+                    arguments.append(f"{name}: {self._outside(part)}")
+            if required.bound is not None:
+                arguments.append(f"bound: {required.bound}")
             yield from document(filter(None, [required.text]), sign="@@")
             yield f"@@requirement:reachable({join_by_commas(arguments)})"
 

@@ -214,6 +214,9 @@ _RESTRICTABLE = demand(
     ),
     "the event '{0.event.name}' is uncontrollable: no requirement can restrict it",
 )
+_BOUND = demand(
+    lambda required: required.bound is None or required.bound >= 0, "a bound on the number of events is not negative"
+)
 _OWN_TARGET = demand(
     lambda edge: edge.target.eContainer() is around(edge, sct.Plant),
     "the target '{0.target.name}' is a location of another plant",
@@ -255,7 +258,12 @@ CHECKS: Checks = {
     sct.Update: [_OWN_VARIABLE, check_type("value", lambda update: declared_type(update.variable.type))],
     sct.Requirement: [_RESTRICTABLE, check_type("condition")],
     sct.StateInvariant: [check_type("condition")],
-    sct.ReachabilityRequirement: [check_type("condition"), check_type("premise")],
+    sct.ReachabilityRequirement: [
+        check_type("condition"),
+        check_type("premise"),
+        check_type("pathCondition"),
+        _BOUND,
+    ],
     sct.Property: [check_type("condition")],
     sct.ReachabilityProperty: [check_type("premise")],
     sct.EventGuard: [_CONTROLLABLE, check_type("requirement"), check_type("synthesis")],

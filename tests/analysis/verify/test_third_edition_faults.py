@@ -170,7 +170,7 @@ FAULTS: Mapping[str, Fault] = {
         *('requirement R1 "can get home"', "from `Base.lost` no state with `Base.docked` can be reached"),
     ),
     "the CIF has no `from`": Fault(
-        *(_CIF_TEXT, "if required.premise is not None:", "if False:", "Reached"),
+        *(_CIF_TEXT, "if part is not None:", "if False:", "Reached"),
         *(_TO_CIF, "a requirement about reachable states differs in the state `Base.gone`"),
     ),
     "the CIF has no requirement about reachable states": Fault(

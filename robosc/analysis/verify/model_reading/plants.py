@@ -171,6 +171,8 @@ class _PlantReading:
             self.claim("the reachable condition of a requirement", required.condition, required)
             premise = required.premise or ex.BooleanLiteral(value=True)
             self.claim("the condition after `from` of a requirement", premise, required)
+            if required.pathCondition is not None:
+                self.claim("the condition of the path of a requirement", required.pathCondition, required)
         for claimed in self.model.properties:
             if isinstance(claimed, sct.InvariantProperty):
                 self.claim("the condition of a property", claimed.condition, claimed)
