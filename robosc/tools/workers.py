@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import signal
 import sys
+import warnings
 from collections import deque
 from concurrent.futures import BrokenExecutor, Future
 from contextlib import closing, contextmanager
@@ -111,8 +112,11 @@ def _backend(cluster: str | None) -> Iterator[Deaths]:
     kind, _, address = (cluster or "loky:").partition(":")
     if kind not in _BACKENDS:
         raise CallError(f"--cluster {cluster}: write dask:tcp://HOST:PORT or ray:ADDRESS")
-    with _BACKENDS[kind](address) as deaths:
-        yield deaths
+    with warnings.catch_warnings():
+        # joblib warns about tasks without a result after a stop, and about processes that end early.
+        warnings.filterwarnings("ignore", module="joblib")
+        with _BACKENDS[kind](address) as deaths:
+            yield deaths
 
 
 def import_needed(module: str, package: str) -> None:

@@ -93,30 +93,19 @@ def validate(models: Models, configuration: Configuration) -> list[Verdict]:
 
     Raises ValueError if the model has no supervisor, and MemoryError if decision diagrams take more than 4 GB.
     """
-    return [*_validate_c(models, configuration), *_validate_cif(models, configuration)]
-
-
-def _validate_c(models: Models, configuration: Configuration) -> list[Verdict]:
-    questions = c_validation.PROPERTIES[: 1 if is_from_cif(models.sct) else None]
-    return _validate(models, configuration, questions, supervisor, validate_generated_c)
-
-
-def _validate_cif(models: Models, configuration: Configuration) -> list[Verdict]:
-    questions = (cif_extension_validation.PROPERTY,)
-    return _validate(models, configuration, questions, cif, lambda *generated: [measure(validate_cif, *generated)])
-
-
-def _validate(
-    models: Models,
-    configuration: Configuration,
-    questions: Sequence[str],
-    target: Any,
-    examine: Callable[..., list[Verdict]],
-) -> list[Verdict]:
-    obstacles = [own for own in target.preconditions(models, configuration) if has_errors([own])]
-    if obstacles:
-        return [Verdict(question, Outcome.SKIPPED, "", obstacles[0].message) for question in questions]
-    return examine(models.sct, target.generate(models, configuration))
+    targets: list[tuple[Sequence[str], Any, Callable[..., list[Verdict]]]] = [
+        (c_validation.PROPERTIES[: 1 if is_from_cif(models.sct) else None], supervisor, validate_generated_c),
+        ((cif_extension_validation.PROPERTY,), cif, lambda *generated: [measure(validate_cif, *generated)]),
+    ]
+    verdicts = []
+    for questions, target, examine in targets:
+        obstacles = [own for own in target.preconditions(models, configuration) if has_errors([own])]
+        verdicts += (
+            [Verdict(question, Outcome.SKIPPED, "", obstacles[0].message) for question in questions]
+            if obstacles
+            else examine(models.sct, target.generate(models, configuration))
+        )
+    return verdicts
 
 
 def _verify_properties(models: Models, _configuration: Configuration) -> list[Verdict]:
@@ -126,13 +115,22 @@ def _verify_properties(models: Models, _configuration: Configuration) -> list[Ve
     return verdicts
 
 
+def _validate_plants(models: Models, _configuration: Configuration) -> list[Verdict]:
+    return [measure(validate_model, models.robosc, models.sct)]
+
+
+def _validate_controller(models: Models, _configuration: Configuration) -> list[Verdict]:
+    return [] if is_from_cif(models.sct) else [measure(validate_controller, models)]
+
+
+def _validate_artifacts(models: Models, configuration: Configuration) -> list[Verdict]:
+    return validate(models, configuration)
+
+
 #: The parts of a verification by name, in the order of their verdicts. They are independent of each other.
 PARTS: Mapping[str, Callable[[Models, Configuration], list[Verdict]]] = {
     "properties": _verify_properties,
-    model_reading.PROPERTY: lambda models, _: [measure(validate_model, models.robosc, models.sct)],
-    controller_reading.PROPERTY: lambda models, _: (
-        [] if is_from_cif(models.sct) else [measure(validate_controller, models)]
-    ),
-    "generated C": _validate_c,
-    "generated CIF": _validate_cif,
+    model_reading.PROPERTY: _validate_plants,
+    controller_reading.PROPERTY: _validate_controller,
+    "generated C and CIF": _validate_artifacts,
 }

@@ -21,7 +21,7 @@ from robosc.tools.cli import WRONG_CALL, CallError, interruption, say
 from robosc.tools.cli.options import FILE, Paths, configuration, memory, paths
 from robosc.tools.cli.progress import progress
 from robosc.tools.cli.report import Report
-from robosc.tools.sweep.jobs import Job, inputs_of, perform
+from robosc.tools.sweep.jobs import Job, absolute, inputs_of, perform
 from robosc.tools.sweep.results import Results
 from robosc.tools.sweep.variants import SettingError, combinations, replaced, whole_numbers
 from robosc.tools.workers import completed
@@ -43,7 +43,7 @@ _WIDTH = 120
     "settings",
     multiple=True,
     metavar="NAME=A,B,C",
-    help="Use each of these values, or a range such as 1..9, for a constant or parameter; repeatable: all combinations.",
+    help="Use each of these values, or a range such as 1..9, for a constant or parameter; repeat for all combinations.",
 )
 @click.option("--seeds", metavar="A..B", help="With test: play a random walk for each seed instead of scenarios.")
 @click.option(
@@ -62,7 +62,9 @@ _WIDTH = 120
     show_default=True,
     help="The control loop that plays scenarios.",
 )
-@click.option("--output", type=click.Path(dir_okay=False), help="Append a line of JSON for each job to FILE, and resume.")
+@click.option(
+    "--output", type=click.Path(dir_okay=False), help="Append a line of JSON for each job to FILE, and resume."
+)
 @click.option("--jobs", type=click.IntRange(1), metavar="N", help="Use N processes.  [default: one for each processor]")
 @click.option("--cluster", metavar="ADDRESS", help="Use a cluster: dask:tcp://HOST:PORT or ray:ADDRESS.")
 @configuration
@@ -105,13 +107,12 @@ def command(
         raise click.UsageError("--seeds and --scenarios need `sweep test`")
     if seeds and scenarios:
         raise click.UsageError("--seeds and --scenarios exclude each other")
-    used = {"synthesize": {"megabytes": megabytes}, "verify": {"megabytes": megabytes}, "test": {"engine": engine}}
-    own = {"megabytes": megabytes, "events": events} if seeds else used.get(action, {})
+    own: dict[str, Any] = {"check": {}, "test": {"engine": engine}}.get(action, {"megabytes": megabytes})
+    if seeds:
+        own = {"megabytes": megabytes, "events": events}
     with Report(aside=True):
         try:
             numbers = [None] if seeds is None else whole_numbers(seeds)
-            if numbers is None:
-                raise SettingError(f"--seeds {seeds}: write the first and the last seed, such as 1..100")
             variants = combinations(settings)
             played = None if action == "test" and not seeds and not scenarios else scenarios
             models = _models(targets, action, needs_scenarios=played is None)
@@ -179,10 +180,10 @@ def _variants(
         contents = inputs_of(model, searched)
         settings = chosen or (config.find(Path(model).parent) if action in {"verify", "test"} else None)
         played = [str(Path(model).with_suffix(".scenarios"))] if scenarios is None else scenarios
-        for name in [*([settings] if settings else []), *played]:
-            contents[os.path.abspath(name)] = files.read(name)
+        for name in [*([str(settings)] if settings else []), *played]:
+            contents[absolute(name)] = files.read(name)
         for variant, changed in zip(variants, changes, strict=True):
-            texts = {os.path.abspath(name): text.encode() for name, text in changed.items()}
+            texts = {absolute(name): text.encode() for name, text in changed.items()}
             yield Job(
                 action,
                 model,
@@ -230,9 +231,17 @@ def _show(planned: Sequence[Job], lines: Sequence[dict[str, Any] | None]) -> Non
         table.add_column(heading)
     table.add_column("seconds", justify="right")
     for job, line in zip(planned, lines, strict=True):
-        variant = [*(f"{name}={value}" for name, value in job.values), *([] if job.seed is None else [f"seed {job.seed}"])]
+        variant = [
+            *(f"{name}={value}" for name, value in job.values),
+            *([] if job.seed is None else [f"seed {job.seed}"]),
+        ]
         if line is None:
-            status, style, result, seconds = "killed", "bold red", "its process was killed, most often for its memory", ""
+            status, style, result, seconds = (
+                "killed",
+                "bold red",
+                "its process was killed, most often for its memory",
+                "",
+            )
         else:
             status, style = _STYLES.get(line["exit_status"], ("internal error", "bold red"))
             result, seconds = _summary(line), f"{line['seconds']:.2f}"

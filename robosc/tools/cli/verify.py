@@ -81,7 +81,9 @@ def command(
         steps = [""]
         with progress(lambda: f"verifying {steps[-1]}; robots with very many states take minutes"):
             verdicts = (
-                verify(models, settings, steps.append) if jobs == 1 else _verify_in_processes(model, chosen, paths, jobs)
+                verify(models, settings, steps.append)
+                if jobs == 1
+                else _verify_in_processes(model, chosen, paths, jobs)
             )
         report.add(finding for verdict in verdicts for finding in verdict.findings)
     if junit:

@@ -6,7 +6,6 @@ import hashlib
 import json
 import os
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path, PurePath
 from random import Random
 from time import perf_counter, process_time
@@ -19,7 +18,7 @@ from robosc.analysis.supervise import Supervision, supervise
 from robosc.analysis.verify import Outcome, verify
 from robosc.analysis.verify.properties import requirement_name
 from robosc.analysis.verify.verdict import as_json
-from robosc.base.diagnostics import Severity, as_json as findings_as_json
+from robosc.base.diagnostics import as_json as findings_as_json
 from robosc.base.files import reading as files
 from robosc.base.files.writing import temporary_folder
 from robosc.language import configuration
@@ -27,7 +26,7 @@ from robosc.model import sct
 from robosc.model.semantics.evaluation import evaluate
 from robosc.run.simulation import Simulation
 from robosc.run.simulation.session import trace_line
-from robosc.tools.cli import EMPTY_SUPERVISOR, ERRORS_FOUND, as_call_error
+from robosc.tools.cli import ERRORS_FOUND, as_call_error
 from robosc.tools.cli.options import Paths
 from robosc.tools.cli.reading import read, read_models
 from robosc.tools.cli.report import Report
@@ -35,7 +34,7 @@ from robosc.tools.cli.test import Call, play_all
 from robosc.tools.sweep.variants import is_shipped
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from robosc.m2t.models import Models
 
@@ -47,8 +46,9 @@ _DEFINITIONS = {".msg", ".srv", ".action", ".xml"}
 class Job:
     """A command on a variant of a model.
 
-    `model`, `config` and `scenarios` are paths as in the call, and `settings` its options by name. `contents` are the bytes of all input
-    files by their absolute paths, and `folder` is the working folder. With a `seed`, `test` plays a random walk.
+    `model`, `config` and `scenarios` are paths as in the call, and `settings` its options by name. `contents` are the
+    bytes of all input files by their absolute paths, and `folder` is the working folder. With a `seed`, `test` plays a
+    random walk.
     """
 
     command: str
@@ -84,7 +84,12 @@ def inputs_of(model: str, paths: Paths) -> dict[str, bytes]:
             named += files.inputs()
     for folder in paths.interfaces:
         named += [str(path) for path in Path(folder).rglob("*") if path.suffix in _DEFINITIONS and path.is_file()]
-    return {os.path.abspath(name): files.read(name) for name in dict.fromkeys(named) if not is_shipped(name)}
+    return {absolute(name): files.read(name) for name in dict.fromkeys(named) if not is_shipped(name)}
+
+
+def absolute(path: str) -> str:
+    """Return a path from the root, without `..`; links stay."""
+    return os.path.normpath(Path(path).absolute())
 
 
 def perform(job: Job) -> dict[str, Any]:
@@ -94,7 +99,7 @@ def perform(job: Job) -> dict[str, Any]:
         root = place.resolve()
 
         def inside(path: str) -> str:
-            whole = PurePath(os.path.normpath(os.path.join(job.folder, path)))
+            whole = PurePath(os.path.normpath(Path(job.folder, path)))
             return str(root / whole.relative_to(whole.anchor))
 
         for path, content in job.contents.items():
@@ -135,7 +140,7 @@ def _attempted(job: Job, inside: Callable[[str], str]) -> tuple[int, dict[str, A
         status = end.exit_code
     except click.ClickException as fault:
         status, error = fault.exit_code, fault.format_message()
-    except Exception as fault:  # noqa: BLE001 - the other jobs go on
+    except Exception as fault:
         failed = as_call_error(fault)
         status, error = failed.exit_code, failed.format_message()
     findings: list[Any] = json.loads(findings_as_json.render(report.findings))
@@ -206,7 +211,8 @@ def _walk(job: Job, inside: Callable[[str], str], paths: Paths, report: Report, 
     """Play random events. It fails in a state that violates an invariant, or that is not marked and has no event."""
     models, _ = _supervised(job, inside, paths, report)
     simulation = Simulation(models.sct, models.rosgraph, models.ros_types)
-    claims = [*models.sct.invariants, *(own for own in models.sct.properties if isinstance(own, sct.InvariantProperty))]
+    claims: list[sct.StateInvariant | sct.InvariantProperty] = [*models.sct.invariants]
+    claims += [own for own in models.sct.properties if isinstance(own, sct.InvariantProperty)]
     random = Random(job.seed)  # noqa: S311
     fault, most = None, dict(job.settings)["events"]
     for number in range(most + 1):

@@ -35,8 +35,12 @@ class Results:
         self.by_job: dict[str, dict[str, Any]] = {}
         self._file = None if path is None else os.fdopen(open_log(path), "wb", buffering=0)
         if path is not None and self._file is not None and stat.S_ISREG(os.fstat(self._file.fileno()).st_mode):
-            self._lock(path)
-            self._load(path)
+            try:
+                self._lock(path)
+                self._load(path)
+            except BaseException:
+                self._file.close()
+                raise
 
     def _lock(self, path: str) -> None:
         assert self._file is not None

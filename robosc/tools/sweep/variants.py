@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 #: A value between commas: brackets and strings may contain commas.
 _VALUE = re.compile(r'(?:"(?:\\.|[^"\\])*"|\([^()]*\)|\[[^][]*\]|\{[^{}]*\}|[^,])+')
-_RANGE = re.compile(r"(-?\d+)\.\.(-?\d+)")
+_RANGE = re.compile(r"\s*(-?\d+)\.\.(-?\d+)\s*")
 #: Maximum number of whole numbers in a range.
 MOST = 1_000_000
 
@@ -46,11 +46,11 @@ class _Declared:
     span: Span
 
 
-def whole_numbers(text: str) -> list[int] | None:
-    """Return the numbers of a range such as `1..100`; None if the text is no range. Raises SettingError."""
-    bounds = _RANGE.fullmatch(text.strip())
+def whole_numbers(text: str) -> list[int]:
+    """Return the numbers of a range such as `1..100`. Raises SettingError."""
+    bounds = _RANGE.fullmatch(text)
     if bounds is None:
-        return None
+        raise SettingError(f"{text}: write the first and the last number, such as 1..100")
     low, high = int(bounds[1]), int(bounds[2])
     if not 0 <= high - low < MOST:
         raise SettingError(f"{text}: the last number is at least the first, and the range has at most {MOST:,}")
@@ -67,9 +67,11 @@ def combinations(settings: Sequence[str]) -> list[dict[str, str]]:
     named: dict[str, list[str]] = {}
     for setting in settings:
         name, _, values = setting.partition("=")
-        numbers = whole_numbers(values)
-        parts = [part.strip() for part in _VALUE.findall(values)] if numbers is None else list(map(str, numbers))
-        if not name.strip() or not parts or not all(parts):
+        is_range = _RANGE.fullmatch(values) is not None
+        parts = list(map(str, whole_numbers(values))) if is_range else _VALUE.findall(values)
+        is_complete = is_range or ",".join(parts) == values
+        parts = [part.strip() for part in parts]
+        if not name.strip() or not parts or not all(parts) or not is_complete:
             raise SettingError(f"{setting}: write NAME=VALUE,VALUE, such as number=1,2,3 or number=1..3")
         if name.strip() in named:
             raise SettingError(f"{setting}: {name.strip()} is set twice; write all values after one =")
