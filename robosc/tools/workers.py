@@ -6,6 +6,7 @@ hold texts and numbers, no models.
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import sys
@@ -76,6 +77,14 @@ def completed(
                 raise CallError(f"{cluster}: a worker cannot run the jobs: {error}; {hint}") from error
 
 
+def processors() -> int:
+    """Return the number of processors that this process may use. Raises CallError if joblib is missing."""
+    import_needed("joblib", "robosc[sweep]")
+    import joblib
+
+    return int(joblib.cpu_count())
+
+
 def _results(
     work: Callable[[Task], Result], tasks: Iterable[Task], numbers: Iterator[int], started: dict[int, Task], jobs: int
 ) -> Iterator[tuple[int, Result]]:
@@ -134,9 +143,10 @@ def _loky(_address: str) -> Iterator[Deaths]:
         with joblib.parallel_config("loky", initializer=_begin):
             yield (BrokenExecutor,)
     finally:
-        # joblib removes its temporary folder only at the end of the interpreter, which the command skips.
+        # Release folders and locks now. joblib does so at the end of the interpreter, which the command skips.
         executor = get_reusable_executor(reuse=True)
         getattr(executor, "terminate", executor.shutdown)(kill_workers=True)
+        gc.collect()
 
 
 def _begin() -> None:

@@ -22,9 +22,9 @@ from robosc.tools.cli.options import FILE, Paths, configuration, memory, paths
 from robosc.tools.cli.progress import progress
 from robosc.tools.cli.report import Report
 from robosc.tools.sweep.jobs import Job, absolute, inputs_of, perform
-from robosc.tools.sweep.results import Results
+from robosc.tools.sweep.results import Results, Row
 from robosc.tools.sweep.variants import SettingError, combinations, replaced, whole_numbers
-from robosc.tools.workers import completed
+from robosc.tools.workers import completed, processors
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -105,6 +105,8 @@ def command(
     """
     if action != "test" and (seeds or scenarios):
         raise click.UsageError("--seeds and --scenarios need `sweep test`")
+    if cluster and jobs:
+        raise click.UsageError("--cluster has its own processes: remove it or --jobs")
     if seeds and scenarios:
         raise click.UsageError("--seeds and --scenarios exclude each other")
     own: dict[str, Any] = {"check": {}, "test": {"engine": engine}}.get(action, {"megabytes": megabytes})
@@ -126,9 +128,9 @@ def command(
     by_identity = {job.identity: job for job in planned}
     with Results(output) as results:
         killed = _do(by_identity, results, jobs, cluster, resumable=output is not None)
-        lines = [results.by_job.get(identity) for identity in by_identity]
-    _show(list(by_identity.values()), lines)
-    status = max([WRONG_CALL if killed else 0, *(line["exit_status"] for line in lines if line is not None)])
+        rows = [results.by_job.get(identity) for identity in by_identity]
+    _show(list(by_identity.values()), rows)
+    status = max([WRONG_CALL if killed else 0, *(row.status for row in rows if row is not None)])
     if status:
         raise click.exceptions.Exit(status)
 
@@ -207,7 +209,8 @@ def _do(planned: Mapping[str, Job], results: Results, jobs: int | None, cluster:
     done = killed = 0
     try:
         with progress(lambda: f"{before + done} of {format_count(len(planned), 'job')} done"):
-            for _, line in completed(perform, rest, jobs or os.cpu_count() or 1, cluster):
+            number = min(jobs or processors(), max(len(rest), 1))
+            for _, line in completed(perform, rest, number, cluster):
                 interruption.check()
                 if line is None:
                     killed += 1
@@ -221,7 +224,7 @@ def _do(planned: Mapping[str, Job], results: Results, jobs: int | None, cluster:
     return killed
 
 
-def _show(planned: Sequence[Job], lines: Sequence[dict[str, Any] | None]) -> None:
+def _show(planned: Sequence[Job], rows: Sequence[Row | None]) -> None:
     """Print a table of the results, in the order of the call."""
     console = Console(highlight=False)
     if not console.is_terminal:
@@ -230,12 +233,12 @@ def _show(planned: Sequence[Job], lines: Sequence[dict[str, Any] | None]) -> Non
     for heading in ("model", "variant", "status", "result"):
         table.add_column(heading)
     table.add_column("seconds", justify="right")
-    for job, line in zip(planned, lines, strict=True):
+    for job, row in zip(planned, rows, strict=True):
         variant = [
             *(f"{name}={value}" for name, value in job.values),
             *([] if job.seed is None else [f"seed {job.seed}"]),
         ]
-        if line is None:
+        if row is None:
             status, style, result, seconds = (
                 "killed",
                 "bold red",
@@ -243,36 +246,10 @@ def _show(planned: Sequence[Job], lines: Sequence[dict[str, Any] | None]) -> Non
                 "",
             )
         else:
-            status, style = _STYLES.get(line["exit_status"], ("internal error", "bold red"))
-            result, seconds = _summary(line), f"{line['seconds']:.2f}"
+            status, style = _STYLES.get(row.status, ("internal error", "bold red"))
+            result, seconds = row.summary, f"{row.seconds:.2f}"
         cells = [Text(visible(cell)) for cell in (job.model, " ".join(variant))]
         table.add_row(*cells, Text(status, style), Text(visible(result)), seconds)
     console.print(table)
-    failed = sum(line is None or line["exit_status"] != 0 for line in lines)
-    say(f"\n{format_count(len(lines), 'job')}: {len(lines) - failed} ok, {failed} failed")
-
-
-def _summary(line: Mapping[str, Any]) -> str:
-    """Return the result of a job in words; of a failed one, its first error."""
-    if line["error"]:
-        return str(line["error"])
-    errors = [finding for finding in line["findings"] if finding["severity"] == "error"]
-    if errors:
-        return f"{errors[0]['file']}:{errors[0]['line']}: {errors[0]['message']}"
-    result = line["result"]
-    warnings = format_count(len(line["findings"]), "warning") if line["findings"] else ""
-    if result.get("fault"):
-        return f"{result['fault']} after {format_count(result['events'], 'event')}"
-    parts = []
-    if "controlled_states" in result:
-        parts = [format_count(result["controlled_states"], "state"), format_count(result["operations"], "operation")]
-    elif "properties" in result:
-        outcomes = [own["outcome"] for own in result["properties"]]
-        refuted = [own["property"] for own in result["properties"] if own["outcome"] == "refuted"]
-        counts = [f"{outcomes.count(outcome)} {outcome}" for outcome in dict.fromkeys(outcomes) if outcome != "refuted"]
-        parts = [*(f"refuted: {name}" for name in refuted), *counts]
-    elif "scenarios" in result:
-        parts = [f"{len(result['scenarios'])} passed"]
-    elif "events" in result:
-        parts = [format_count(result["events"], "event")]
-    return ", ".join(filter(None, [*parts, warnings])) or "no findings"
+    failed = sum(row is None or row.status != 0 for row in rows)
+    say(f"\n{format_count(len(rows), 'job')}: {len(rows) - failed} ok, {failed} failed")

@@ -38,8 +38,8 @@ if TYPE_CHECKING:
 
     from robosc.m2t.models import Models
 
-#: Suffixes of the files in a folder of ROS types that are read.
-_DEFINITIONS = {".msg", ".srv", ".action", ".xml"}
+#: Ends of the names of files that count in a folder with ROS types.
+_DEFINITIONS = (".msg", ".srv", ".action", "package.xml", "_IGNORE")
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ def inputs_of(model: str, paths: Paths) -> dict[str, bytes]:
             read(model, Paths(paths.libraries), Report())
             named += files.inputs()
     for folder in paths.interfaces:
-        named += [str(path) for path in Path(folder).rglob("*") if path.suffix in _DEFINITIONS and path.is_file()]
+        named += [str(path) for path in Path(folder).rglob("*") if path.name.endswith(_DEFINITIONS) and path.is_file()]
     return {absolute(name): files.read(name) for name in dict.fromkeys(named) if not is_shipped(name)}
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -254,7 +255,7 @@ def test_an_interrupted_sweep_goes_on(run: Run, buffers: str) -> None:
         _, told = process.communicate(timeout=60)
     assert process.returncode == 130
     assert "of 40 jobs have results; the same call does the others" in told
-    assert "Traceback" not in told
+    assert not re.search("Traceback|Warning", told)
     before = lines()
     assert 2 <= len(before) < 40
     assert run(*call).exit_code == 0

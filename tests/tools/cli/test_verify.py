@@ -1,7 +1,6 @@
 """`robosc verify`: the table, the traces, JSON, JUnit, and the exit status."""
 
 import json
-import re
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -219,19 +218,3 @@ def test_wrong_calls(run: Run, library: Path, door: Path) -> None:
     assert run("verify", library).exit_code == 2
     assert run("verify", "nothing.rscd").exit_code == 2
     assert run("verify", door, "--junit", door / "file.xml").exit_code == 2
-
-
-def without_seconds(text: str) -> str:
-    """Return the output of `verify` without times."""
-    return re.sub(r"\d+\.\d+", "", text)
-
-
-@pytest.mark.parametrize("more", [[], ["--json"]])
-def test_the_output_does_not_depend_on_the_number_of_processes(run: Run, lock: Path, more: list[str]) -> None:
-    answers = [run("verify", lock, "--jobs", jobs, "--junit", f"{jobs}.xml", *more) for jobs in ("1", "2")]
-    assert [answer.exit_code for answer in answers] == [1, 1]
-    assert without_seconds(answers[0].stdout) == without_seconds(answers[1].stdout)
-    assert answers[0].stderr == answers[1].stderr
-    assert "refuted" in answers[1].stdout
-    written = [without_seconds(Path(f"{jobs}.xml").read_text()) for jobs in ("1", "2")]
-    assert written[0] == written[1]
