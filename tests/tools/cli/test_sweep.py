@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -25,6 +26,8 @@ from .conftest import DOOR
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from robosc.tools.sweep.jobs import Job
 
     from .conftest import Run
 
@@ -124,21 +127,30 @@ def test_the_result_does_not_depend_on_the_number_of_processes(run: Run, door: P
 
 
 def test_a_job_needs_only_its_own_bytes(run: Run, courier: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    jobs: list[Any] = []
-    monkeypatch.setattr(
-        "robosc.tools.cli.sweep.completed", lambda _work, tasks, *_: iter([(jobs.append(task), None) for task in tasks])
-    )
-    assert run("sweep", "synthesize", courier.name, "-I", "parts", "--jobs", "1").exit_code == 2
-    alone = run("synthesize", courier.name, "-I", "parts")
-    (courier.parent / "parts" / "lamps.rscd").unlink()
+    package = courier.parent / "types" / "courier_msgs"
+    (package / "action").mkdir(parents=True)
+    (package / "package.xml").write_text("<package><name>courier_msgs</name></package>\n")
+    (package / "action" / "Drive.action").write_text("---\n---\nint32 distance\n")
+    jobs: list[Job] = []
+
+    def keep(_work: object, tasks: list[Job], *_: object) -> list[tuple[Job, None]]:
+        jobs.extend(tasks)
+        return [(task, None) for task in tasks]
+
+    monkeypatch.setattr("robosc.tools.cli.sweep.completed", keep)
+    options = ["-I", "parts", "--interface-path", "types"]
+    assert run("sweep", "synthesize", courier.name, *options, "--jobs", "1").exit_code == 2
+    alone = run("synthesize", courier.name, *options)
+    for folder in (courier.parent / "parts", courier.parent / "types"):
+        shutil.rmtree(folder)
     courier.unlink()
     [job] = jobs
     line = perform(job)
     assert line["exit_status"] == alone.exit_code == 0
-    assert {finding["file"] for finding in line["findings"]} == {"courier.rscd", "parts/lamps.rscd"} & {
-        place.partition(":")[0] for place in alone.stderr.splitlines()
-    }
-    assert line["findings"]
+    places = [f"{finding['file']}:{finding['line']}:{finding['column']}: " for finding in line["findings"]]
+    assert any(place.startswith("parts/lamps.rscd") for place in places)
+    assert [place for place in places if place not in alone.stderr] == []
+    assert alone.stderr.count("warning: ") == len(places)
 
 
 def test_random_walks_find_a_violated_property_and_their_trace_repeats_it(run: Run, tmp_path: Path) -> None:
@@ -192,13 +204,12 @@ def test_changed_inputs_and_options_are_done_again(run: Run, buffers: str) -> No
 
 
 def test_a_file_with_other_content_stays(run: Run, buffers: str) -> None:
-    for content in ("my notes", "my notes\n", '{"id": "1"}\n[1]\n'):
+    assert run("sweep", "check", buffers, "--jobs", "1", "--output", "own.jsonl").exit_code == 0
+    for content, line in (("my notes", 1), ("my notes\n", 1), (Path("own.jsonl").read_text() + "[1]\n", 2)):
         Path("results.jsonl").write_text(content)
         answer = run("sweep", "check", buffers, "--output", "results.jsonl")
         assert answer.exit_code == 2
-        assert (
-            f"results.jsonl:{max(content.count(chr(10)), 1)}: this line is no result of `robosc sweep`" in answer.output
-        )
+        assert f"results.jsonl:{line}: this line is no result of `robosc sweep`" in answer.output
         assert Path("results.jsonl").read_text() == content
 
 
