@@ -277,7 +277,9 @@ def test_an_interrupted_sweep_goes_on(run: Run, buffers: str) -> None:
 
 
 @pytest.mark.slow
-def test_a_dask_cluster_whose_worker_is_killed_loses_and_doubles_nothing(run: Run, buffers: str) -> None:
+def test_a_dask_cluster_whose_worker_is_killed_loses_and_doubles_nothing(
+    run: Run, buffers: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     distributed = pytest.importorskip("distributed")
     with (
         distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs=50) as cluster,
@@ -297,6 +299,12 @@ def test_a_dask_cluster_whose_worker_is_killed_loses_and_doubles_nothing(run: Ru
         answer = run(*call, "--cluster", f"dask:{cluster.scheduler_address}")
         thread.join()
         assert workers[0] not in client.run(os.getpid).values()
+        with monkeypatch.context() as patch:
+            patch.setattr("robosc.tools.workers.__version__", "0.0.1")
+            other = run("sweep", "check", buffers, "--cluster", f"dask:{cluster.scheduler_address}")
+        assert other.exit_code == 2
+        assert "it has robosc" in other.output
+        assert "install robosc 0.0.1 for all workers" in other.output
     assert answer.exit_code == 0, answer.output
     assert at_death[0] < 40
     assert len(lines()) == 40
