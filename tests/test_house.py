@@ -30,6 +30,8 @@ LIBRARIES = {
     "arpeggio": {"language"},
     "click": {"tools"},
     "diagnostic_msgs": {"run"},
+    "distributed": {"tools"},
+    "joblib": {"tools"},
     "lsprotocol": {"tools"},
     "lz4": {"base"},
     "mcap": {"base"},
@@ -41,6 +43,7 @@ LIBRARIES = {
     "pygments": {"language"},
     "pygls": {"tools"},
     "rcl_interfaces": {"run"},
+    "ray": {"tools"},
     "rclpy": {"run"},
     "rich": {"base", "tools"},
     "rosbags": {"base"},
@@ -171,6 +174,9 @@ OPENERS = {
     "base.files.writing",
     "tools.cli",  # the null device, for streams that are closed
     "tools.cli.format",  # the standard output
+    "tools.workers",  # the null device, for the errors of a process
+    "tools.sweep.jobs",  # its own temporary folder
+    "tools.sweep.results",  # what `files.writing` has opened
     "base.diagnostics.rules",  # what ships with the tool, here and in those below without a word of their own
     "model.semantics.naming",
     "synthesis.memory",  # what the kernel tells of the process

@@ -31,7 +31,7 @@ from robosc.model.semantics.roles import is_from_cif
 from robosc.synthesis import MEMORY, use_encoding
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from robosc.language.configuration import Configuration
     from robosc.m2t.models import Models
@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from robosc.synthesis.encoding import Encoding
 
 __all__ = [
+    "PARTS",
     "Effort",
     "LoopEffort",
     "Outcome",
@@ -59,7 +60,7 @@ def verify(
 ) -> list[Verdict]:
     """Verify a supervised model, and return a verdict for each property.
 
-    `begin` is called with the name of each step before the step starts.
+    `begin` is called with the name of each of the `PARTS` before it starts.
 
     The verdicts are about the model's properties (`verify_system`), the constant data of its commands
     (`data_can_comply`, if the supervisor decides with data), its plants and its controller compared with the
@@ -67,16 +68,11 @@ def verify(
     (`validate`). Raises ValueError if the model has no supervisor, and MemoryError if decision diagrams take more than
     4 GB.
     """
-    begin(model_reading.PROPERTY)
-    reading = measure(validate_model, models.robosc, models.sct)
-    begin(controller_reading.PROPERTY)
-    controllers = [] if is_from_cif(models.sct) else [measure(validate_controller, models)]
-    begin("properties")
-    system = verify_system(models.sct)
-    if has_commands_with_data(models.sct):
-        system.append(measure(data_can_comply, models))
-    begin("generated C and CIF")
-    return [*system, reading, *controllers, *validate(models, configuration)]
+    verdicts = []
+    for name, part in PARTS.items():
+        begin(name)
+        verdicts += part(models, configuration)
+    return verdicts
 
 
 def verify_system(model: sct.SupervisoryControlModel, *, memory: int = MEMORY) -> list[Verdict]:
@@ -110,3 +106,31 @@ def validate(models: Models, configuration: Configuration) -> list[Verdict]:
             else examine(models.sct, target.generate(models, configuration))
         )
     return verdicts
+
+
+def _verify_properties(models: Models, _configuration: Configuration) -> list[Verdict]:
+    verdicts = verify_system(models.sct)
+    if has_commands_with_data(models.sct):
+        verdicts.append(measure(data_can_comply, models))
+    return verdicts
+
+
+def _validate_plants(models: Models, _configuration: Configuration) -> list[Verdict]:
+    return [measure(validate_model, models.robosc, models.sct)]
+
+
+def _validate_controller(models: Models, _configuration: Configuration) -> list[Verdict]:
+    return [] if is_from_cif(models.sct) else [measure(validate_controller, models)]
+
+
+def _validate_artifacts(models: Models, configuration: Configuration) -> list[Verdict]:
+    return validate(models, configuration)
+
+
+#: The parts of a verification by name, in the order of their verdicts. They are independent of each other.
+PARTS: Mapping[str, Callable[[Models, Configuration], list[Verdict]]] = {
+    "properties": _verify_properties,
+    model_reading.PROPERTY: _validate_plants,
+    controller_reading.PROPERTY: _validate_controller,
+    "generated C and CIF": _validate_artifacts,
+}

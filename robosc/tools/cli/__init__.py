@@ -44,6 +44,7 @@ _GROUPS = {
         "explain": "Explain why an event is forbidden.",
         "verify": "Prove the properties of the supervised robot.",
         "report": "Write a verification report for the person who signs off the robot.",
+        "sweep": "Check, synthesize, verify or test many models and variants.",
     },
     "Simulate and test": {
         "simulate": "Simulate the supervised robot.",
@@ -150,10 +151,10 @@ class _Commands(click.Group):
         except Exception as error:
             if interruption.was_interrupted():
                 raise click.exceptions.Exit(INTERRUPTED) from None
-            raise _error_message(error, show=ctx.params["traceback"]) from error
+            raise as_call_error(error, show=ctx.params["traceback"]) from error
 
 
-def _error_message(error: Exception, *, show: bool) -> click.ClickException:
+def as_call_error(error: Exception, *, show: bool = False) -> click.ClickException:
     """Return the error message for an exception that no command handles. With `show`, also print its traceback."""
     if isinstance(error, OSError):
         named = bool(error.filename)

@@ -84,6 +84,23 @@ memory = click.option(
 )
 
 
+#: Option of commands whose parts can run in processes. Call `require_own_synthesis` with its value.
+jobs = click.option(
+    "--jobs",
+    type=click.IntRange(min=1),
+    default=1,
+    show_default=True,
+    metavar="N",
+    help="Use N processes. The output is the same.",
+)
+
+
+def require_own_synthesis(jobs: int) -> None:
+    """Raise UsageError if processes, which synthesize themselves, would not use the synthesizer in the call."""
+    if jobs > 1 and chosen_synthesizer() is not None:
+        raise click.UsageError("--jobs needs RoboSC's own synthesis: remove it or --synthesizer")
+
+
 def over_ros(text: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
     """Return a decorator that adds the flag `--ros2` to a command, which receives it as `live`. `text` is its help."""
     return click.option("--ros2", "live", is_flag=True, help=text)

@@ -35,7 +35,7 @@ class Report:
     """Collects findings and shows them at the end of its `with` block, also after an exception.
 
     Findings as text go to standard error if the command prints something else (`aside`). Other formats go to standard
-    output. Ends the program with the status that the errors require.
+    output; with the format `none`, they are only collected. Ends the program with the status that the errors require.
     """
 
     def __init__(self, form: str = "text", *, aside: bool = False) -> None:
@@ -91,7 +91,7 @@ class Report:
             from robosc.base.diagnostics import as_sarif
 
             put(as_sarif.render(self.findings, __version__), nl=False)
-        elif self.findings:
+        elif self.findings and self.form != "none":
             from robosc.base.diagnostics import as_text
 
             paint = as_text.plain if os.environ.get("NO_COLOR") else _paint

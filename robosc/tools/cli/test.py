@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shlex
 import sys
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from time import perf_counter
@@ -37,14 +37,17 @@ from robosc.tools.cli.options import (
     chosen_synthesizer,
     configuration,
     findings_format,
+    jobs,
     model,
     over_ros,
     paths,
+    require_own_synthesis,
     synthesizer,
 )
 from robosc.tools.cli.progress import progress
 from robosc.tools.cli.reading import read_configuration, read_models, supervise_models
 from robosc.tools.cli.report import Report
+from robosc.tools.workers import completed
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -75,6 +78,7 @@ if TYPE_CHECKING:
 )
 @click.option("--traces", type=click.Path(file_okay=False), help="Also write the event log of each scenario to FOLDER.")
 @click.option("--junit", type=click.Path(dir_okay=False), help="Also write JUnit XML to FILE.")
+@jobs
 @click.option("--watch", is_flag=True, help="Test again after each change of a file, until Ctrl-C.")
 @configuration
 @findings_format
@@ -100,11 +104,14 @@ def command(watch: bool, **options: Any) -> None:
 
     Exit status: 0 all scenarios passed, 1 a scenario failed, or errors, 2 a wrong call, 3 no supervisor exists.
     """
-    call = _Call(**options)
+    call = Call(**options)
     if not call.model.endswith(".rscd"):
         raise CallError(f"{call.model} is not a text file: scenarios need a robot in a .rscd file")
     if call.node is not None and not call.live:
         raise click.UsageError("--node needs --ros2")
+    require_own_synthesis(call.jobs)
+    if call.live and call.jobs > 1:
+        raise click.UsageError("--ros2 plays one scenario at a time: remove it or --jobs")
     if watch:
         settings = call.chosen or str(Path(call.model).with_name(FILE_NAME))
         watch_files("testing", partial(_test, call), [call.model], [*call.scenarios, settings], call.paths)
@@ -112,23 +119,24 @@ def command(watch: bool, **options: Any) -> None:
 
 
 @dataclass(frozen=True)
-class _Call:
+class Call:
     """Arguments and options of a call."""
 
     model: str
     scenarios: Sequence[str]
-    engine: str
-    live: bool
-    node: str | None
-    traces: str | None
-    junit: str | None
-    chosen: str | None
-    form: str
-    paths: Paths
+    engine: str = "python"
+    live: bool = False
+    node: str | None = None
+    traces: str | None = None
+    junit: str | None = None
+    chosen: str | None = None
+    form: str = "text"
+    paths: Paths = field(default_factory=Paths)
+    jobs: int = 1
 
 
 @dataclass
-class _Run:
+class Run:
     """Run of a scenario: the calls of its control loop, its event log, its seconds, and its findings."""
 
     scenario: Scenario
@@ -138,23 +146,46 @@ class _Run:
     findings: list[Diagnostic]
 
 
-def _test(call: _Call) -> None:
+def _test(call: Call) -> None:
     """Play all scenarios once, and print their results after the findings."""
-    runs: list[_Run] = []
+    runs: list[Run] = []
     began = perf_counter()
     try:
         with Report(call.form, aside=call.form != "text") as report:
-            _play_all(call, report, runs)
+            play_all(call, report, runs)
     except click.exceptions.Exit:
         _show_results(runs, perf_counter() - began)
         raise
     _show_results(runs, perf_counter() - began)
 
 
-def _play_all(call: _Call, report: Report, runs: list[_Run]) -> None:
+def play_all(call: Call, report: Report, runs: list[Run]) -> None:
     """Add the runs of all scenarios to the list, and their findings to the report."""
     if call.junit:
         refuse(call.junit)
+    models, settings, player, scenarios = _prepare(call, report)
+    live: LiveNode | None = None
+    if call.live:
+        report.add(TARGETS["ros2"].findings(models, settings))
+        report.stop_on_errors()
+        live = _live(models, settings, player, call.node)
+    with progress(lambda: f"playing scenario {len(runs) + 1} of {len(scenarios)}"):
+        if call.jobs > 1:
+            runs.extend(_play_in_processes(replace(call, form="none"), len(scenarios)))
+        else:
+            runs.extend(_play(scenario, player, live) for scenario in scenarios)
+            if call.engine == "c":
+                _compare(models, settings, runs)
+    for run in runs:
+        report.add(run.findings)
+    if call.traces is not None:
+        write({Path(call.traces): {f"scenario_{number}.jsonl": run.log for number, run in enumerate(runs, 1)}})
+    if call.junit:
+        write_file(call.junit, _junit(runs, report.texts))
+
+
+def _prepare(call: Call, report: Report) -> tuple[Models, Configuration, Player, list[Scenario]]:
+    """Return the supervised models of a call, their configuration, a player, and the scenarios, all without errors."""
     models, expressions, scenarios = _read(call.model, call.scenarios, call.paths, report)
     settings = read_configuration(call.model, call.chosen, report)
     report.stop_on_errors()
@@ -164,35 +195,41 @@ def _play_all(call: _Call, report: Report, runs: list[_Run]) -> None:
     types = RosTypes(call.paths.interfaces)
     report.add(unfit_data(models.rosgraph, types, scenarios))
     report.stop_on_errors()
-    player = Player(models.rosgraph, settings, types.distribution(2), expressions)
-    live: LiveNode | None = None
-    if call.live:
-        report.add(TARGETS["ros2"].findings(models, settings))
-        report.stop_on_errors()
-        live = _live(models, settings, player, call.node)
-    with progress(lambda: f"playing scenario {len(runs) + 1} of {len(scenarios)}"):
-        runs.extend(_play(scenario, player, live) for scenario in scenarios)
-        if call.engine == "c":
-            _compare(models, settings, runs)
-    for run in runs:
-        report.add(run.findings)
-    if call.traces is not None:
-        write({Path(call.traces): {f"scenario_{number}.jsonl": run.log for number, run in enumerate(runs, 1)}})
-    if call.junit:
-        write_file(call.junit, _junit(runs, report.texts))
+    return models, settings, Player(models.rosgraph, settings, types.distribution(2), expressions), scenarios
 
 
-def _play(scenario: Scenario, player: Player, live: LiveNode | None) -> _Run:
+def _play_in_processes(call: Call, number: int) -> list[Run]:
+    """Return the runs of a number of scenarios in their order. Each process reads the model, and plays its share."""
+    shares = [(call, first) for first in range(min(call.jobs, number))]
+    runs: dict[int, Run] = {}
+    for _, played in completed(_play_share, shares, call.jobs):
+        if played is None:
+            raise CallError("a process that played scenarios was killed; use fewer --jobs if memory is short")
+        runs |= played
+    return [runs[scenario] for scenario in sorted(runs)]
+
+
+def _play_share(share: tuple[Call, int]) -> dict[int, Run]:
+    call, first = share
+    with Report(call.form) as report:
+        models, settings, player, scenarios = _prepare(call, report)
+    runs = {place: _play(scenarios[place], player, None) for place in range(first, len(scenarios), call.jobs)}
+    if call.engine == "c":
+        _compare(models, settings, list(runs.values()))
+    return {place: replace(run, operations=Operations()) for place, run in runs.items()}
+
+
+def _play(scenario: Scenario, player: Player, live: LiveNode | None) -> Run:
     began = perf_counter()
     operations = Operations()
     findings = player.play(scenario, operations)
     if live is not None and not findings:
         findings = _followed(live, scenario, player)
     log = "".join(f"{line}\n" for line in player.trace)
-    return _Run(scenario, operations, log, perf_counter() - began, findings)
+    return Run(scenario, operations, log, perf_counter() - began, findings)
 
 
-def _show_results(runs: Sequence[_Run], seconds: float) -> None:
+def _show_results(runs: Sequence[Run], seconds: float) -> None:
     """Print the failed scenarios, and how many failed and passed."""
     if not runs:
         return
@@ -203,7 +240,7 @@ def _show_results(runs: Sequence[_Run], seconds: float) -> None:
     say(f"{', '.join(f'{count} {word}' for word, count in counts.items() if count)} in {seconds:.2f} s", err=True)
 
 
-def _junit(runs: Sequence[_Run], texts: Mapping[str, str]) -> str:
+def _junit(runs: Sequence[Run], texts: Mapping[str, str]) -> str:
     """Return JUnit XML: a suite for each file, and a test case for each scenario."""
     cases = []
     for run in runs:
@@ -283,7 +320,7 @@ def _followed(live: LiveNode, scenario: Scenario, player: Player) -> list[Diagno
     return [] if difference is None else [difference]
 
 
-def _compare(models: Models, settings: Configuration, runs: Sequence[_Run]) -> None:
+def _compare(models: Models, settings: Configuration, runs: Sequence[Run]) -> None:
     """Add the deviations of the generated control loop to the runs. Raises CallError if it cannot be compiled here."""
     compiler = c_compiler()
     if compiler is None:

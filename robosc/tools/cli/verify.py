@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+from time import time_ns
 from typing import TYPE_CHECKING
 
 import click
@@ -9,20 +11,23 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from robosc.analysis.verify import Outcome, verify
+from robosc.analysis.verify import PARTS, Outcome, verify
 from robosc.analysis.verify.verdict import TRUSTED, as_json, as_junit, details, summary
 from robosc.base.diagnostics.visible import visible
 from robosc.base.files.writing import refuse, write_file
-from robosc.tools.cli import ERRORS_FOUND, interruption, put, say
-from robosc.tools.cli.options import Paths, configuration, model, paths, synthesizer
+from robosc.tools.cli import ERRORS_FOUND, CallError, interruption, put, say
+from robosc.tools.cli.options import Paths, configuration, jobs, model, paths, require_own_synthesis, synthesizer
 from robosc.tools.cli.progress import progress
 from robosc.tools.cli.reading import read_configuration, read_models, supervise_models
 from robosc.tools.cli.report import Report
+from robosc.tools.workers import completed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from robosc.analysis.verify import Verdict
+    from robosc.language.configuration import Configuration
+    from robosc.m2t.models import Models
     from robosc.model import sct
 
 _STYLES = {
@@ -42,11 +47,13 @@ _WIDTH = 120
 @click.option("--junit", type=click.Path(dir_okay=False), help="Also write JUnit XML to FILE.")
 @configuration
 @synthesizer
+@jobs
 @paths
 def command(
     model: str,
     as_object: bool,
     junit: str | None,
+    jobs: int,
     chosen: str | None,
     paths: Paths,
 ) -> None:
@@ -64,6 +71,7 @@ def command(
 
     Exit status: 0 no property refuted, 1 refuted or errors in the model, 2 a wrong call, 3 no supervisor exists.
     """
+    require_own_synthesis(jobs)
     with Report(aside=True) as report:
         models = read_models(model, paths, report, cif=True)
         settings = read_configuration(model, chosen, report)
@@ -72,7 +80,11 @@ def command(
         supervise_models(models, report)
         steps = [""]
         with progress(lambda: f"verifying {steps[-1]}; robots with very many states take minutes"):
-            verdicts = verify(models, settings, steps.append)
+            verdicts = (
+                verify(models, settings, steps.append)
+                if jobs == 1
+                else _verify_in_processes(model, chosen, paths, jobs)
+            )
         report.add(finding for verdict in verdicts for finding in verdict.findings)
     if junit:
         interruption.check()
@@ -83,6 +95,32 @@ def command(
         _show(models.sct, verdicts)
     if any(verdict.outcome is Outcome.REFUTED for verdict in verdicts):
         raise click.exceptions.Exit(ERRORS_FOUND)
+
+
+def _verify_in_processes(model: str, chosen: str | None, paths: Paths, jobs: int) -> list[Verdict]:
+    """Return the verdicts on a model without errors. Each process reads and synthesizes it again."""
+    parts: dict[str, list[Verdict]] = {}
+    began = time_ns()
+    for (*_, name), verdicts in completed(_part, [(model, chosen, paths, began, name) for name in PARTS], jobs):
+        if verdicts is None:
+            raise CallError(f"the process that verified {name} was killed; use fewer --jobs if memory is short")
+        parts[name] = verdicts
+    return [verdict for name in PARTS for verdict in parts[name]]
+
+
+def _part(task: tuple[str, str | None, Paths, int, str]) -> list[Verdict]:
+    *supervised, name = task
+    return PARTS[name](*_supervised(*supervised))
+
+
+@lru_cache(maxsize=1)
+def _supervised(model: str, chosen: str | None, paths: Paths, _began: int) -> tuple[Models, Configuration]:
+    """Return a model and its configuration, once in each process of a call, which `_began` identifies."""
+    with Report("none") as report:
+        models = read_models(model, paths, report, cif=True)
+        settings = read_configuration(model, chosen, report)
+        supervise_models(models, report)
+    return models, settings
 
 
 def _show(model: sct.SupervisoryControlModel, verdicts: Sequence[Verdict]) -> None:

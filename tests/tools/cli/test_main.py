@@ -25,6 +25,7 @@ COMMANDS = [
     "explain",
     "verify",
     "report",
+    "sweep",
     "simulate",
     "view",
     "test",

@@ -86,3 +86,28 @@ def test_faults_of_the_text_leave_no_results(run: Run, door: Path, tmp_path: Pat
     answer = run("test", door.name, "door.scenarios", "--junit", "results.xml")
     assert (answer.exit_code, answer.stderr) == (1, "1 error\n")
     assert not (tmp_path / "results.xml").exists()
+
+
+@pytest.mark.parametrize("engine", ["python", pytest.param("c", marks=pytest.mark.build)])
+@pytest.mark.parametrize("form", ["text", "json"])
+def test_the_output_does_not_depend_on_the_number_of_processes(
+    run: Run, files: list[str], engine: str, form: str, tmp_path: Path
+) -> None:
+    answers = []
+    for jobs in ("1", "2", "9"):
+        options = ["--engine", engine, "--format", form, "--traces", f"traces{jobs}", "--jobs", jobs]
+        answers.append(run("test", *files, *options))
+    assert [answer.exit_code for answer in answers] == [1, 1, 1]
+    outputs = {(answer.stdout, re.sub(r"in [\d.]+ s", "", answer.stderr)) for answer in answers}
+    assert len(outputs) == 1
+    traces = [
+        {path.name: path.read_bytes() for path in (tmp_path / f"traces{jobs}").iterdir()} for jobs in ("1", "2", "9")
+    ]
+    assert traces[0] == traces[1] == traces[2]
+    assert len(traces[0]) == 4
+
+
+def test_processes_do_not_play_over_ros(run: Run, files: list[str]) -> None:
+    answer = run("test", *files, "--ros2", "--jobs", "2")
+    assert answer.exit_code == 2
+    assert "--ros2 plays one scenario at a time" in answer.output

@@ -1,0 +1,1 @@
+"""Jobs over many models, variants and seeds: their inputs, their work, and the file of their results."""

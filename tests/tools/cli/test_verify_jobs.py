@@ -1,0 +1,39 @@
+"""`robosc verify` in several processes."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from .conftest import DOOR
+
+if TYPE_CHECKING:
+    from .conftest import Run
+
+
+def without_seconds(text: str) -> str:
+    return re.sub(r"\d+\.\d+", "", text)
+
+
+@pytest.mark.build
+@pytest.mark.parametrize("more", [[], ["--json"]])
+def test_the_output_does_not_depend_on_the_number_of_processes(run: Run, door: Path, more: list[str]) -> None:
+    door.write_text(DOOR.replace("  requirement", "  property never Leaf.opened\n  requirement"))
+    answers = [run("verify", door, "--jobs", jobs, "--junit", f"{jobs}.xml", *more) for jobs in ("1", "2")]
+    assert [answer.exit_code for answer in answers] == [1, 1]
+    assert without_seconds(answers[0].stdout) == without_seconds(answers[1].stdout)
+    assert answers[0].stderr == answers[1].stderr
+    assert "refuted" in answers[1].stdout
+    assert "loop-translation" in answers[1].stdout
+    results = [without_seconds(Path(f"{jobs}.xml").read_text()) for jobs in ("1", "2")]
+    assert results[0] == results[1]
+
+
+def test_findings_and_an_empty_supervisor_are_those_of_one_process(run: Run, stuck: Path, broken: Path) -> None:
+    for file, status in ((stuck, 3), (broken, 1)):
+        answers = [run("verify", file, "--jobs", jobs) for jobs in ("1", "2")]
+        assert [answer.exit_code for answer in answers] == [status, status]
+        assert answers[0].output == answers[1].output
