@@ -231,7 +231,7 @@ class Observer:
             tuple(self._unreachable_states()),
             tuple(self._unused_assumptions()),
             dict(self._affordable_counterexamples()),
-            flaws(self._system, self._system.solution.rounds[0]) if self._system.model.supervised else (),
+            flaws(self._system, self._system.solution.reached) if self._system.model.supervised else (),
         )
 
     def weights(self) -> Iterator[Weight]:

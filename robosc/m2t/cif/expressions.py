@@ -53,13 +53,6 @@ class CifPrinter(Printer):
             return Printed(self.between(ex.Implication, self.operand(level, left), self.operand(level, right)), level)
         return super().binary(expression, left, right)
 
-    def call(self, expression: ex.FunctionCall, arguments: Sequence[Printed]) -> Printed:
-        """Print a call of a function. In CIF, `mod` is an operator."""
-        if expression.function != "mod":
-            return super().call(expression, arguments)
-        left, right = (argument.tight for argument in arguments)
-        return Printed(f"{left}{BREAK}mod {right}", PRECEDENCE[ex.Multiplication])
-
     def between(self, kind: type[ex.BinaryExpression], left: str, right: str) -> str:
         """Return an operator after a BREAK, except for comparisons."""
         return (
