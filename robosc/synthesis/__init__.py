@@ -290,7 +290,7 @@ def _solve(
                 encoding.diagrams, steps(plant_moves(search.relations)), encoding.initial, encoding.diagrams.true
             )
             uncontrolled_states = encoding.count_plants(uncontrolled)
-        rival_statistics = Statistics(operations=statistics.operations)
+        rival_statistics = statistics.another()
         states = race.supervise(search, lambda: _search(model, layout, capacity, rival_statistics))
     statistics.strategy = race.strategy
     if states.search is search:

@@ -453,6 +453,11 @@ def element_name(element: Element) -> str:
     return element.name if isinstance(element, sct.Plant) else f"{element.eContainer().name}.{element.name}"
 
 
+def element_names(model: sct.SupervisoryControlModel) -> list[str]:
+    """Return the names of all elements, in the order of the text."""
+    return [element_name(element) for plant in model.plants for element in _elements(plant)]
+
+
 def _order(model: sct.SupervisoryControlModel, index: Mapping[Element, int], order: Order) -> list[int]:
     """Return the indices of the elements in an order."""
     if order == "text":

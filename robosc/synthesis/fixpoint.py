@@ -151,7 +151,7 @@ class _Saturation:
         groups = [(level, list(group)) for level, group in groupby(by_level, key=lambda step: step.level)]
         self._levels = [level for level, _ in groups]
         self._groups = [group for _, group in groups]
-        self._follow = SymbolicStep.image if forwards else SymbolicStep.preimage
+        self._follow = diagrams.statistics.followed(SymbolicStep.image if forwards else SymbolicStep.preimage)
 
     def closure(self, states: Diagram, within: Diagram) -> Computation[Diagram]:
         """Return the least set that holds `states` and is closed under the steps within the bound.
@@ -317,7 +317,8 @@ def _merged_alike(steps: Sequence[SymbolicStep]) -> list[SymbolicStep]:
     for group in alike.values():
         merged = group[0]
         if len(group) > 1:
-            merged = replace(merged, relation=merged.encoding.diagrams.any_of(step.relation for step in group))
+            relation = merged.encoding.diagrams.any_of(step.relation for step in group)
+            merged = replace(merged, relation=relation, events=tuple(event for step in group for event in step.events))
         pays = len(group) != _PAIR or merged.apart is not None or merged.relation.node_count() <= _SMALL
         merged_steps += [merged] if pays else group
     return merged_steps

@@ -41,7 +41,8 @@ class SymbolicStep:
     The inputs of the event are quantified: each of their values may occur. `relation` is over present and next values.
     `present` and `following` are the variables of the changed elements. `same` states that these are equal: renaming by
     conjunction, unlike substitution, does not touch the diagram below. `changed` are the changed elements. `touched`
-    are these and the elements that the plants read. It is empty unless some integer is wide.
+    are these and the elements that the plants read. It is empty unless some integer is wide. `events` are the events of
+    the moves.
     """
 
     level: int
@@ -52,6 +53,7 @@ class SymbolicStep:
     encoding: Encoding
     changed: tuple[Element, ...]
     touched: tuple[Element, ...]
+    events: tuple[sct.Event, ...] = ()
 
     def image(self, states: Diagram) -> Diagram:
         """Return the states after the event in one of `states`."""
@@ -100,6 +102,7 @@ def join_steps(first: SymbolicStep, second: SymbolicStep) -> SymbolicStep:
         following=first.following & second.following,
         same=first.same & second.same,
         changed=changed,
+        events=(*first.events, *second.events),
     )
 
 
@@ -308,6 +311,7 @@ class EventRelation:
             touched=tuple(sorted(self.touched, key=lambda element: domains[element].rank))
             if self._encoding.layout.wide
             else (),
+            events=(self.event,),
         )
 
     @property

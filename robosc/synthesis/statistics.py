@@ -6,10 +6,15 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from enum import StrEnum
 from time import perf_counter, process_time
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Self
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
+
+    from robosc.synthesis.bdd import Diagram
+    from robosc.synthesis.relation import SymbolicStep
+
+    Follow = Callable[[SymbolicStep, Diagram], Diagram]
 
 
 class Phase(StrEnum):
@@ -70,6 +75,14 @@ class Statistics:
         """Start a new attempt."""
         self.attempts += 1
         self.rounds = self.operations = self.states = self.peak_nodes = 0
+
+    def another(self) -> Self:
+        """Return statistics of the same kind for another computation, which begins with the same operations."""
+        return type(self)(operations=self.operations)
+
+    def followed(self, follow: Follow) -> Follow:
+        """Return a function that follows steps as `follow` does, and records their costs if they are observed."""
+        return follow
 
     def replace_costs(self, other: Statistics) -> None:
         """Take over the counts of another computation."""

@@ -137,10 +137,13 @@ def supervise_models(models: Models, report: Report, *, memory: int | None = Non
     from robosc.analysis.supervise import supervise
     from robosc.synthesis import MEMORY
     from robosc.tools.cli.progress import show_progress
+    from robosc.tools.cli.tuning import chosen_tuning
 
     if supervise_otherwise(models.sct, memory=memory) is None and models.sct.supervisor is None:
         with show_progress(models.sct) as statistics:
-            supervision = supervise(models.sct, memory=memory or MEMORY, statistics=statistics)
+            supervision = supervise(
+                models.sct, memory=memory or MEMORY, statistics=statistics, tuning=chosen_tuning(models.sct)
+            )
         report.add(supervision.findings)
         report.stop_on_errors()
 

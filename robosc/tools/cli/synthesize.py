@@ -18,12 +18,14 @@ from robosc.model.semantics.naming import enumeration
 from robosc.model.semantics.printing import RobotPrinter, SctPrinter, conjunction
 from robosc.model.semantics.roles import SILENT, assumptions, event_name, input_values
 from robosc.model.semantics.walks import copy_tree
-from robosc.synthesis import Tuning, count
+from robosc.synthesis import count
 from robosc.tools.cli import EMPTY_SUPERVISOR, put, say
 from robosc.tools.cli.options import Paths, chosen_synthesizer, memory, model, paths, synthesizer
 from robosc.tools.cli.progress import show_progress
 from robosc.tools.cli.reading import read_models, supervise_otherwise
 from robosc.tools.cli.report import Report
+from robosc.tools.cli.synthesis_cost import show_cost
+from robosc.tools.cli.tuning import chosen_tuning, tuning
 
 if sys.platform != "win32":
     import resource
@@ -46,10 +48,19 @@ _LONGEST = 200
 )
 @click.option("--without", metavar="NAME", help="Print what changes without the assumption NAME.")
 @memory
+@click.option("--explain-cost", is_flag=True, help="Print what makes synthesis expensive, instead of guards.")
 @synthesizer
+@tuning
 @paths
 def command(
-    model: str, as_json: bool, counts: bool, count_inputs: bool, without: str | None, megabytes: int, paths: Paths
+    model: str,
+    as_json: bool,
+    counts: bool,
+    count_inputs: bool,
+    without: str | None,
+    explain_cost: bool,
+    megabytes: int,
+    paths: Paths,
 ) -> None:
     """Synthesize the supervisor of a robot and print its states and guards.
 
@@ -62,7 +73,9 @@ def command(
     Guards too long to read are omitted (`guard` is null), and `guard_nodes` is the size of the decision diagram.
     --counts omits all guards. --count-inputs counts each state once for each value of the robot's inputs, as CIF's
     tools do. States of .cif files are always counted in this way. --without synthesizes a second time without one
-    assumption, and prints the guards and the requirements for which the result differs.
+    assumption, and prints the guards and the requirements for which the result differs. --explain-cost prints the
+    elements, events and requirements that cost most, and the order of the decision diagrams. --order and --strategy
+    change the cost of synthesis, but never the supervisor (docs/synthesis.md).
 
     \b
     Examples:
@@ -71,14 +84,14 @@ def command(
 
     Exit status: 0 success, 1 errors in the model, 2 a wrong call, 3 no supervisor exists.
     """
-    if counts and chosen_synthesizer() is not None:
-        raise click.UsageError("--counts needs RoboSC's own synthesis: remove it or --synthesizer")
-    if without is not None and (counts or chosen_synthesizer() is not None):
-        raise click.UsageError("--without compares guards: remove it, or --counts and --synthesizer")
+    _require_compatible(counts=counts, explain_cost=explain_cost, without=without)
     with Report(aside=True) as report:
         plants = read_models(model, paths, report, cif=True).sct
         times = input_values(plants) if count_inputs else 1
         assumption = None if without is None else _assumption(plants, without)
+        if explain_cost:
+            show_cost(plants, chosen_tuning(plants), megabytes << 20, times, as_json=as_json)
+            return
         if counts:
             _count(plants, megabytes << 20, times, as_json=as_json)
             return
@@ -87,18 +100,17 @@ def command(
             show = _show_json if as_json else _show
             show(plants, Diagnosis(**vars(synthesis)), times)
             return
+        tuned = chosen_tuning(plants, longest=_LONGEST)
         try:
             with show_progress(plants) as statistics:
-                supervision = supervise(
-                    plants, memory=megabytes << 20, statistics=statistics, weigh=True, tuning=Tuning(longest=_LONGEST)
-                )
+                supervision = supervise(plants, memory=megabytes << 20, statistics=statistics, weigh=True, tuning=tuned)
         except EmptySupervisorError as error:
             if as_json:
                 _show_json(plants, error.synthesis, times)
             raise
         if assumption is not None:
             plants.plants.remove(assumption)
-            other = diagnose(plants, memory=megabytes << 20, weigh=True, tuning=Tuning(longest=_LONGEST))
+            other = diagnose(plants, memory=megabytes << 20, weigh=True, tuning=tuned)
             changes = _changes(plants, supervision.synthesis, other, times)
             if as_json:
                 put(json.dumps({"without": without, **changes}, indent=2))
@@ -108,6 +120,17 @@ def command(
         report.add(supervision.findings)
         show = _show_json if as_json else _show
         show(plants, supervision.synthesis, times)
+
+
+def _require_compatible(*, counts: bool, explain_cost: bool, without: str | None) -> None:
+    """Raise UsageError if options of the call exclude each other."""
+    if (counts or explain_cost) and chosen_synthesizer() is not None:
+        option = "--counts" if counts else "--explain-cost"
+        raise click.UsageError(f"{option} needs RoboSC's own synthesis: remove it or --synthesizer")
+    if explain_cost and (counts or without is not None):
+        raise click.UsageError("--explain-cost replaces the other output: remove it, or --counts and --without")
+    if without is not None and (counts or chosen_synthesizer() is not None):
+        raise click.UsageError("--without compares guards: remove it, or --counts and --synthesizer")
 
 
 def _assumption(model: sct.SupervisoryControlModel, name: str) -> sct.Plant:
@@ -167,7 +190,7 @@ def _show_changes(model: sct.SupervisoryControlModel, changes: dict[str, Any]) -
 
 def _count(model: sct.SupervisoryControlModel, memory: int, times: int, *, as_json: bool) -> None:
     with show_progress(model) as statistics:
-        counted = count(model, memory=memory, statistics=statistics)
+        counted = count(model, memory=memory, statistics=statistics, tuning=chosen_tuning(model))
     if as_json:
         put(json.dumps(_counts(model, counted, statistics, times), indent=2))
     else:
@@ -233,6 +256,7 @@ def _cost(statistics: Statistics) -> dict[str, Any]:
         "peak_nodes": statistics.peak_nodes,
         "operations": statistics.operations,
         "rounds": statistics.rounds,
+        "strategy": statistics.strategy,
         "attempts": statistics.attempts,
         "phase_seconds": {phase: round(seconds, 3) for phase, seconds in statistics.seconds.items()},
         "peak_bytes": _peak_bytes(),

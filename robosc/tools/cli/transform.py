@@ -19,6 +19,7 @@ from robosc.tools.cli.options import Paths, configuration, findings_format, memo
 from robosc.tools.cli.progress import progress
 from robosc.tools.cli.reading import read_configuration, read_models, supervise_models
 from robosc.tools.cli.report import Report
+from robosc.tools.cli.tuning import tuning
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -102,6 +103,7 @@ class _Command(click.Command):
 @findings_format
 @memory
 @synthesizer
+@tuning
 @paths
 def command(
     model: str,

@@ -20,6 +20,7 @@ from robosc.tools.cli.options import Paths, configuration, jobs, model, paths, r
 from robosc.tools.cli.progress import progress
 from robosc.tools.cli.reading import read_configuration, read_models, supervise_models
 from robosc.tools.cli.report import Report
+from robosc.tools.cli.tuning import tuning
 from robosc.tools.workers import completed
 
 if TYPE_CHECKING:
@@ -47,6 +48,7 @@ _WIDTH = 120
 @click.option("--junit", type=click.Path(dir_okay=False), help="Also write JUnit XML to FILE.")
 @configuration
 @synthesizer
+@tuning
 @jobs
 @paths
 def command(
