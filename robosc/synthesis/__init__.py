@@ -290,12 +290,12 @@ def _solve(
                 encoding.diagrams, steps(plant_moves(search.relations)), encoding.initial, encoding.diagrams.true
             )
             uncontrolled_states = encoding.count_plants(uncontrolled)
-        rival_statistics = statistics.another()
-        states = race.supervise(search, lambda: _search(model, layout, capacity, rival_statistics))
+        before = statistics.another()
+        states = race.supervise(search, lambda: _search(model, layout, capacity, before.another()))
     statistics.strategy = race.strategy
     if states.search is search:
         return _Solution(states, uncontrolled, uncontrolled_states)
-    statistics.replace_costs(rival_statistics)
+    statistics.replace_costs(states.search.diagrams.statistics)
     return _Solution(states, None, uncontrolled_states)
 
 

@@ -412,30 +412,39 @@ def _rounds(search: Search, reached: Diagram) -> Rounds:
             return rounds
 
 
-def supervise_forwards(search: Search) -> Computation[SupervisedStates]:
+def supervise_forwards(search: Search, within: Diagram | None = None) -> Computation[SupervisedStates]:
     """Return the states of the maximally permissive, controllable, non-blocking supervisor.
 
-    The search begins with the states that are reachable under the requirements. Each round removes states from them.
+    The search begins with the states that are reachable under the requirements, `within` some states that contain all
+    good ones. Each round removes states from them.
     """
     diagrams, initial = search.diagrams, search.encoding.initial
-    reached = yield from _reaching(diagrams, search.steps, initial, diagrams.true)
+    bound = diagrams.true if within is None else within
+    reached = yield from _reaching(diagrams, search.steps, initial & bound, bound)
     good = yield from _good(search, reached)
     # The set of reachable states stays good: all successors of a reachable state are reachable.
     controlled = good if good == reached else (yield from _reaching(diagrams, search.steps, initial & good, good))
-    return SupervisedStates(search, controlled, reached)
+    return SupervisedStates(search, controlled, reached if within is None else None)
 
 
-def good_of_all(search: Search) -> Computation[Diagram]:
-    """Return the good states among all states, whether they are reachable or not.
+def safe_states(search: Search) -> Computation[Diagram]:
+    """Return the states, reachable or not, from which uncontrollable events lead to no violation."""
+    states = search.encoding.whole(domain.element for domain in search.encoding.layout.state)
+    bad = states & search.violating
+    return states & ~(yield from _coreaching(search.diagrams, search.uncontrollable, bad, states))
+
+
+def good_states(search: Search, safe: Diagram) -> Computation[Diagram]:
+    """Return the good states among the safe ones, whether they are reachable or not.
 
     The states of the supervisor are those that it reaches within. For chains of components, the diagrams of all good
     states are far smaller than those of the reachable ones. For many other models, they are far larger.
     """
-    return _good(search, search.encoding.whole(domain.element for domain in search.encoding.layout.state))
+    return _good(search, safe)
 
 
 def supervise_within(search: Search, good: Diagram) -> SupervisedStates:
-    """Return the states of the supervisor within the result of `good_of_all`."""
+    """Return the states of the supervisor within the result of `good_states`."""
     return SupervisedStates(search, reachable(search.diagrams, search.steps, search.encoding.initial & good, good))
 
 

@@ -47,12 +47,13 @@ def variable_order(size: int, edges: Sequence[Sequence[int]]) -> list[int]:
 
 
 def hubs(size: int, edges: Sequence[Sequence[int]]) -> list[int]:
-    """Return the vertices that belong to almost every edge, ascending.
+    """Return the vertices that belong to almost every edge of at least two vertices, ascending.
 
     Returns no vertices if many belong to almost every edge: no order can then keep the edges short.
     """
-    degree = Counter(vertex for edge in edges for vertex in set(edge))
-    central = [vertex for vertex in range(size) if degree[vertex] > _HUB * len(edges)]
+    joining = [edge for edge in edges if len(edge) > 1]
+    degree = Counter(vertex for edge in joining for vertex in edge)
+    central = [vertex for vertex in range(size) if degree[vertex] > _HUB * len(joining)]
     return central if len(central) <= _HUBS * size else []
 
 

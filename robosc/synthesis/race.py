@@ -1,7 +1,6 @@
-"""Two strategies for the same fixpoint, in turns until one of them is done.
+"""Strategies for the same fixpoint, in turns until one of them is done.
 
-Both compute the same supervisor. The turns depend on numbers of operations only, so the winner is the same on every
-run.
+All compute the same supervisor. The turns depend on numbers of operations only, so the winner is the same on every run.
 """
 
 from __future__ import annotations
@@ -10,7 +9,14 @@ from enum import StrEnum
 from typing import TYPE_CHECKING, Generic
 
 from robosc.synthesis.bdd import OutOfRoomError
-from robosc.synthesis.fixpoint import T, completed, good_of_all, supervise_forwards, supervise_within
+from robosc.synthesis.fixpoint import (
+    T,
+    completed,
+    good_states,
+    safe_states,
+    supervise_forwards,
+    supervise_within,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -18,9 +24,9 @@ if TYPE_CHECKING:
     from robosc.synthesis.bdd import Diagram
     from robosc.synthesis.fixpoint import Computation, Search, SupervisedStates
 
-#: Number of operations before the second strategy begins. Most models are done by then.
+#: Number of operations before another strategy begins. Most models are done by then.
 _HEAD_START = 1 << 14
-#: Maximum number of operations of the second strategy, per event. Where it is better, it needs fewer.
+#: Maximum number of operations of the backward strategy, per event. Where it is better, it needs fewer.
 _PATIENCE = 400
 
 
@@ -29,12 +35,14 @@ class Strategy(StrEnum):
 
     #: States that are reachable under the requirements.
     FORWARD = "forward"
+    #: States that are reachable without leaving the safe ones: uncontrollable events lead to no violation there.
+    SAFE = "safe"
     #: All states. Their diagrams are smaller for chains of components, and far larger for many other models.
     BACKWARD = "backward"
 
 
 class Race:
-    """Computation of the supervised states with the better strategy.
+    """Computation of the supervised states with the best strategy.
 
     `strategy` is the chosen one, or None as long as none is chosen. It stays chosen if synthesis restarts.
     """
@@ -43,28 +51,35 @@ class Race:
         """Choose a strategy, or none."""
         self.strategy = strategy
 
-    def supervise(self, search: Search, rival: Callable[[], Search]) -> SupervisedStates:
+    def supervise(self, search: Search, another: Callable[[], Search]) -> SupervisedStates:
         """Return the states of the supervisor.
 
         Unless a strategy is chosen, the forward strategy runs on `search`. If it takes long, the backward strategy runs
-        on `rival()`, which has diagrams of its own.
+        in turns with it on `another()`, a search with diagrams of its own. If that takes long, too, the safe strategy
+        replaces both, provided that the safe states are known and that there are violations.
         """
-        if search.encoding.layout.wide:
+        if self.strategy is None and search.encoding.layout.wide:
             # Backwards, the search would count through all values of wide integers.
-            self.strategy = self.strategy or Strategy.FORWARD
+            self.strategy = Strategy.FORWARD
+        if self.strategy is Strategy.FORWARD:
+            return completed(supervise_forwards(search))
         if self.strategy is Strategy.BACKWARD:
-            return supervise_within(search, completed(good_of_all(search)))
-        forward, turn = _Runner(search, supervise_forwards(search)), _HEAD_START
-        backward: _Runner[Diagram] | None = None
+            return supervise_within(search, completed(good_states(search, completed(safe_states(search)))))
+        if self.strategy is Strategy.SAFE:
+            return completed(supervise_forwards(search, completed(safe_states(search))))
+        forward = _Runner(search, supervise_forwards(search))
+        backward: _Backward | None = None
+        turn = _HEAD_START
         while not forward.advance(turn):
             if self.strategy is None:
-                if backward is None:
-                    other = rival()
-                    backward = _Runner(other, good_of_all(other))
-                if backward.advances(turn):
+                backward = backward or _Backward(another())
+                if backward.advance(turn):
                     self.strategy = Strategy.BACKWARD
                     return supervise_within(backward.search, backward.result)
                 if backward.is_out_of_room or turn > _PATIENCE * len(search.moves):
+                    if backward.knows_safe and search.violating.satisfiable():
+                        self.strategy = Strategy.SAFE
+                        return self.supervise(another(), another)
                     self.strategy, backward = Strategy.FORWARD, None
             turn *= 2
         self.strategy = Strategy.FORWARD
@@ -81,7 +96,6 @@ class _Runner(Generic[T]):
         self._computation = computation
         self._statistics = search.diagrams.statistics
         self._start = self._statistics.operations
-        self.is_out_of_room = False
 
     def advance(self, operations: int) -> bool:
         """Run until that many operations are done in total; return whether there is a result."""
@@ -93,10 +107,23 @@ class _Runner(Generic[T]):
                 return True
         return False
 
-    def advances(self, operations: int) -> bool:
-        """Run as `advance`, but end with `is_out_of_room` instead of an error."""
+
+class _Backward(_Runner["Diagram"]):
+    """Computation of the good states among all states. `knows_safe`: the safe states are computed."""
+
+    def __init__(self, search: Search) -> None:
+        super().__init__(search, self._good())
+        self.knows_safe = self.is_out_of_room = False
+
+    def _good(self) -> Computation[Diagram]:
+        safe = yield from safe_states(self.search)
+        self.knows_safe = True
+        return (yield from good_states(self.search, safe))
+
+    def advance(self, operations: int) -> bool:
+        """Run as any computation, but end with `is_out_of_room` instead of an error."""
         try:
-            return self.advance(operations)
+            return super().advance(operations)
         except OutOfRoomError:
             self.is_out_of_room = True
             return False

@@ -63,6 +63,7 @@ def test_an_observer_of_a_ring_comes_last_and_leaves_the_order_of_the_ring():
 
 def test_a_vertex_of_three_quarters_of_the_edges_is_no_hub():
     assert hubs(4, [[0, 1], [0, 2], [0, 3], [2, 3]]) == []
+    assert hubs(4, [[0, 1], [0, 2], [0, 3], [3], [2]]) == [0]
 
 
 def test_vertices_are_no_hubs_if_most_of_them_belong_to_most_edges():

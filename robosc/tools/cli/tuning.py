@@ -40,7 +40,7 @@ def tuning(command: Callable[..., None]) -> Callable[..., None]:
     )
     strategy = click.option(
         "--strategy",
-        type=click.Choice(["automatic", *Strategy]),
+        type=click.Choice(["automatic", *map(str, Strategy)]),
         default="automatic",
         show_default=True,
         expose_value=False,
