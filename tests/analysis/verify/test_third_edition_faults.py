@@ -157,12 +157,12 @@ FAULTS: Mapping[str, Fault] = {
         *("Reached", _MODEL, "the reachable condition of a requirement (line 25) holds by the text and does not in"),
     ),
     "synthesis knows only marked states": Fault(
-        *(_FIXPOINT, "goals = [Goal(diagrams.true, encoding.all_marked), *goals]\n"),
-        *("goals = [Goal(diagrams.true, encoding.all_marked)]\n", "Reached"),
+        *(_FIXPOINT, "self.encoding.all_marked), *self.goals]\n"),
+        *("self.encoding.all_marked)]\n", "Reached"),
         *('requirement R1 "can get home": reachable Base.docked', "from `Base.lost` no state with `Base.docked` can"),
     ),
     "synthesis ends after one round": Fault(
-        *(_FIXPOINT, "rounds.append(good)\n        if not", "rounds.append(good)\n        break\n        if not"),
+        *(_FIXPOINT, "if not bad.satisfiable():\n            return good", "return good & ~bad"),
         *("Reached", 'requirement R1 "can get home"', "from `Base.side` no state with `Base.docked` can be reached"),
     ),
     "the first of all goals is enough": Fault(

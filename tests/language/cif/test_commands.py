@@ -75,7 +75,7 @@ def test_a_guard_too_long_to_read_is_not_written_out(tmp_path: Path, monkeypatch
     path.write_text(_TRAP)
     whole = json.loads(CliRunner().invoke(main, ["synthesize", str(path), "--json"]).stdout)
     assert (whole["events"][0]["guard"], whole["events"][0].get("guard_nodes")) == ("P.n != 2", None)
-    monkeypatch.setattr(importlib.import_module("robosc.tools.cli.synthesize"), "_EFFORT", 0)
+    monkeypatch.setattr(importlib.import_module("robosc.tools.cli.synthesize"), "_LONGEST", 0)
     answer = json.loads(CliRunner().invoke(main, ["synthesize", str(path), "--json"]).stdout)
     assert answer["controlled_states"] == whole["controlled_states"]
     guard = answer["events"][0]
