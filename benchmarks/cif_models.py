@@ -31,6 +31,7 @@ ROOT = Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT))
 
 from benchmarks.cif_models_page import agree, page  # noqa: E402
+from benchmarks.dcs_families import cluster_tools  # noqa: E402
 from benchmarks.families import FAMILIES  # noqa: E402
 from tests.language.cif.escet import SYNTHESIS, Tools, class_path, home  # noqa: E402
 
@@ -45,6 +46,7 @@ _ROBOTS = {
     "warehouse": (8, 10),
     "services": (32,),
 }
+_CLUSTER_TOOLS = (10, 15, 18, 20)
 #: Options of CIF's tool: its fastest settings.
 _OPTIONS = ("--bdd-output=nodes", "--forward-reach=yes", "--event-warn=no", "--stats=ctrl-sys-states,timing")
 #: Phases of its synthesis, from the order of the variables on, by its own names.
@@ -62,8 +64,11 @@ def models(folder: Path) -> dict[str, Path]:
 
 
 def robots(folder: Path) -> dict[str, Path]:
-    """Write robots of our families as CIF into a folder; return their files."""
+    """Write chains of cluster tools and robots of our families as CIF into a folder; return their files."""
     found = {}
+    for number in _CLUSTER_TOOLS:
+        found[f"cluster_tools_{number}"] = path = folder / f"cluster_tools_{number}.cif"
+        path.write_text(cluster_tools(number).text, encoding="utf-8")
     for family, numbers in _ROBOTS.items():
         for number in numbers:
             name = f"{family}_{number}"
@@ -115,7 +120,20 @@ def robosc_measured(path: Path, rounds: int, seconds: float) -> Results | None:
     if cold is None or warm is None:
         return None
     said = json.loads(warm[1])
-    return said | {"seconds": min(said["seconds"])} | cold[0]
+    return said | {"seconds": min(said["seconds"])} | cold[0] | _written(path, script, seconds)
+
+
+def _written(path: Path, script: str, seconds: float) -> Results:
+    """Return the costs of the whole job with guards, and the share of the guards in synthesis.
+
+    The result is empty beyond the limit.
+    """
+    with tempfile.TemporaryDirectory() as scratch:
+        whole = run([sys.executable, "-m", "robosc", "transform", str(path), "--to", "cif", "-o", scratch], seconds)
+    guards = None if whole is None else run([sys.executable, script, str(path), "0"], seconds)
+    if whole is None or guards is None:
+        return {}
+    return {"whole": whole[0]["cold"], **json.loads(guards[1])}
 
 
 class Cif:
@@ -143,6 +161,10 @@ class Cif:
             f"{class_path(self._folder)}{os.pathsep}{self._calls}",
             "Calls",
         ]
+        plain = "\t".join([SYNTHESIS, str(path), "-o", self._output, "--gui=off"])
+        whole = run(command, self._seconds, f"{plain}\n")
+        if whole is not None:
+            found["whole"] = whole[0]["cold"]
         cold = run(command, self._seconds, f"{call}\n")
         if cold is not None:
             found |= cold[0]

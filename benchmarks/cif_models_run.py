@@ -2,7 +2,8 @@
 
     python benchmarks/cif_models_run.py MODEL.cif ROUNDS
 
-Seconds are processor time, from the order of the variables to the number of states.
+Seconds are processor time, from the order of the variables to the number of states. With 0 rounds, the guards are
+computed, too, and the result is their share of the seconds.
 """
 
 from __future__ import annotations
@@ -15,12 +16,16 @@ from time import process_time
 sys.path.insert(0, str(Path(__file__).parent.parent))
 
 from robosc.language.cif import read
-from robosc.synthesis import Statistics, count
+from robosc.synthesis import Phase, Statistics, count, synthesize
 
 
 def main() -> None:
     model = read(sys.argv[1]).model
     assert model is not None
+    if sys.argv[2] == "0":
+        costs = synthesize(model).statistics.processor_seconds
+        print(json.dumps({"guards": costs.get(Phase.GUARDS, 0) / sum(costs.values())}))
+        return
     seconds = []
     for _ in range(int(sys.argv[2])):
         statistics = Statistics()

@@ -94,13 +94,13 @@ def explain_cost(model: sct.SupervisoryControlModel, tuning: Tuning, *, memory: 
     couplings = [[index[element] for element in coupling] for coupling in couplings_of(model, index)]
     degree = Counter(vertex for coupling in couplings for vertex in coupling)
     central = sorted(hubs(len(index), couplings), key=degree.__getitem__, reverse=True)
-    stated: list[Conditional] = [
+    conditions: list[Conditional] = [
         *model.requirements,
         *model.invariants,
         *model.reachabilityRequirements,
     ]
-    sizes = use_encoding(model, lambda encoding: [encoding.holds(own.condition).node_count() for own in stated], memory)
-    by_nodes = sorted(zip(stated, sizes, strict=True), key=lambda row: row[1], reverse=True)
+    sizes = use_encoding(model, lambda encoding: [encoding.holds(own.condition).node_count() for own in conditions], memory)
+    by_nodes = sorted(zip(conditions, sizes, strict=True), key=lambda row: row[1], reverse=True)
     return Cost(
         counts,
         statistics,

@@ -79,8 +79,8 @@ def permission(
         condition = conjunction(_condition(requirement) for requirement in relation.requirements)
         assert condition is not None
         # Only the elements that the requirements read matter: without the others, the diagrams are small.
-        read = set(referenced_elements(condition))
-        others = (domain for domain in domains if domain.element not in read)
+        referenced = set(referenced_elements(condition))
+        others = (domain for domain in domains if domain.element not in referenced)
         mattering = enabled.exists(encoding.diagrams.cube(level for domain in others for level in domain.levels))
         guard.requirement = simplify(condition, mattering, encoding)
         guard.requirements.extend(

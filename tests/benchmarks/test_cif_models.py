@@ -30,7 +30,9 @@ def test_each_is_counted_by_a_process_of_its_own(tmp_path: Path) -> None:
 
 def test_the_page_names_the_models_that_are_slower() -> None:
     def measured(cold: float) -> dict[str, float]:
-        return {"cold": cold, "seconds": cold, "states": 4, "operations": 7, "nodes": 9, "memory": 50}
+        written = {"whole": 2 * cold, "guards": 0.25} if cold < 5 else {}
+        costs = {"cold": cold, "seconds": cold, "states": 4, "operations": 7, "nodes": 9, "memory": 50}
+        return costs | written
 
     pairs = {"fast": (1, 2), "slow": (3, 2), "endless": (5, None)}
     found = {
@@ -40,4 +42,6 @@ def test_the_page_names_the_models_that_are_slower() -> None:
     text = page({"escet": 2, "rounds": 1, "seconds": 30.0, "models": found})
     assert "completes 2 of ESCET's 2 models, in 4 s" in text
     assert "slower than CIF's tool on 1 of these 3 models (`slow`)" in text
-    assert "| endless | 4 | 5.00 | over 30 | 5.0 | over 30 | 7 | 9 | 50 |" in text
+    assert "With guards, it is slower on 1 (`slow`)." in text
+    assert "| fast | 4 | 1.00 | 2.00 | 1.0 | 2.00 | 2.0 | 4.00 | 25% | 7 | 9 | 50 |" in text
+    assert "| endless | 4 | 5.00 | over 30 | 5.0 | over 30 | over 30 | over 30 |  | 7 | 9 | 50 |" in text

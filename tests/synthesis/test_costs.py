@@ -14,12 +14,25 @@ import pytest
 import robosc
 from benchmarks.cif_models import models
 from benchmarks.costs import INTERFACES, counted, robots
+from benchmarks.dcs_families import FAMILIES
 from benchmarks.requirement_costs import KINDS, synthesis_of
 from robosc.synthesis import synthesize
 
 HERE = Path(__file__).parent
 EXAMPLES = HERE.parent.parent / "examples"
 ESCET = "ROBOSC_ESCET_BENCHMARKS"
+
+#: Instances of the families of directed controller synthesis that take about a second.
+_INSTANCES = [
+    ("AT", 5, 5),
+    ("BW", 15, 15),
+    ("CM", 3, 3),
+    ("DP", 10, 10),
+    ("TA", 10, 10),
+    ("TL", 8, 8),
+    ("CLUSTER", 15, 1),
+    ("LINE", 10, 5),
+]
 
 Golden = Callable[[Path, str], None]
 #: The name of a model, its operations and its peak nodes.
@@ -57,6 +70,17 @@ def test_examples_and_kinds_of_requirements_with_their_guards(golden: Golden) ->
         statistics = synthesis_of(10, kind).statistics
         rows.append((f"10 stations, {kind}", statistics.operations, statistics.peak_nodes))
     golden(HERE / "costs" / "synthesis.md", table(rows))
+
+
+@pytest.mark.slow
+def test_families_of_directed_controller_synthesis(golden: Golden, tmp_path: Path) -> None:
+    path = tmp_path / "instance.cif"
+
+    def row(family: str, n: int, k: int) -> Row:
+        path.write_text(FAMILIES[family].instance(n, k).text, encoding="utf-8")
+        return count_row(f"{family}_{n}_{k}", path)
+
+    golden(HERE / "costs" / "dcs.md", table(row(*instance) for instance in _INSTANCES))
 
 
 def test_models_of_escet(golden: Golden) -> None:

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from robosc.synthesis import Strategy
+
 from .conftest import DOOR, Run
 
 
@@ -29,6 +31,7 @@ def test_as_json(run: Run, door: Path) -> None:
         "controlled_states": 2,
         "empty": False,
         "rounds": 1,
+        "strategy": "forward",
         "attempts": 1,
         "requirements": [
             {
@@ -309,3 +312,55 @@ def test_events_that_come_from_the_robot_are_listed_too(run: Run, tmp_path: Path
         ("message_drained.u_response", False, True),
         ("message_drain.c_trigger", True, True),
     ]
+
+
+def test_the_order_and_the_strategy_leave_the_guards(run: Run, door: Path, tmp_path: Path) -> None:
+    answer = run("synthesize", door)
+    order = tmp_path / "order.txt"
+    order.write_bytes(b"\xef\xbb\xbf# from the top\r\nmessage_open  # first\r\n\r\ncomponent_Leaf\r\n")
+    for options in (["--order", "text"], ["--order", str(order)], *(["--strategy", s] for s in Strategy)):
+        assert run("synthesize", door, *options).output == answer.output
+
+
+def test_all_lines_without_an_element_are_errors(run: Run, door: Path, tmp_path: Path) -> None:
+    order = tmp_path / "order.txt"
+    order.write_text("component_Leav\nmessage_open\n  wheel # of the door\n")
+    answer = run("synthesize", door, "--counts", "--order", order)
+    assert answer.exit_code == 2
+    assert answer.stderr.splitlines() == [
+        f"Error: {order}:1:1: the model has no element `component_Leav`; did you mean `component_Leaf`?",
+        f"{order}:3:3: the model has no element `wheel`; `synthesize --explain-cost` prints all names",
+    ]
+    assert run("transform", door, "--to", "cif", "-o", tmp_path / "out", "--order", order).exit_code == 2
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("content", [None, b"component_Leaf\xff\n"])
+def test_an_order_that_cannot_be_read_is_an_error(run: Run, door: Path, tmp_path: Path, content: bytes | None) -> None:
+    order = tmp_path / "order.txt"
+    if content is not None:
+        order.write_bytes(content)
+    answer = run("synthesize", door, "--order", order)
+    assert answer.exit_code in {1, 2}
+    assert str(order) in answer.stderr
+
+
+def test_the_cost_names_events_and_requirements(run: Run, door: Path) -> None:
+    answer = run("synthesize", door, "--explain-cost")
+    assert answer.exit_code == 0
+    first, *lines = answer.output.splitlines()
+    assert first == "Door: 2 states"
+    assert any("`requirement open needs Leaf.closed` (line 17)" in line for line in lines)
+    order = lines[lines.index("order of the diagrams, from the top (a file with these lines is a value of --order):") :]
+    assert {line.strip() for line in order[1:]} >= {"component_Leaf", "message_open"}
+    cost = json.loads(run("synthesize", door, "--explain-cost", "--json").stdout)
+    assert cost["order"] == [line.strip() for line in order[1:]]
+    assert cost["hubs"] == [{"element": "component_Leaf", "couplings": 2}]
+    assert cost["events"][0]["operations"] > 0
+
+
+@pytest.mark.parametrize("option", [["--counts"], ["--without", "A1"]])
+def test_the_cost_replaces_the_other_output(run: Run, door: Path, option: list[str]) -> None:
+    answer = run("synthesize", door, "--explain-cost", *option)
+    assert answer.exit_code == 2
+    assert "--explain-cost replaces the other output" in answer.stderr
