@@ -99,7 +99,9 @@ def explain_cost(model: sct.SupervisoryControlModel, tuning: Tuning, *, memory: 
         *model.invariants,
         *model.reachabilityRequirements,
     ]
-    sizes = use_encoding(model, lambda encoding: [encoding.holds(own.condition).node_count() for own in conditions], memory)
+    sizes = use_encoding(
+        model, lambda encoding: [encoding.holds(own.condition).node_count() for own in conditions], memory
+    )
     by_nodes = sorted(zip(conditions, sizes, strict=True), key=lambda row: row[1], reverse=True)
     return Cost(
         counts,

@@ -162,7 +162,7 @@ FAULTS: Mapping[str, Fault] = {
         *('requirement R1 "can get home": reachable Base.docked', "from `Base.lost` no state with `Base.docked` can"),
     ),
     "synthesis ends after one round": Fault(
-        *(_FIXPOINT, "if not bad.satisfiable():\n            return good", "return good & ~bad"),
+        *(_FIXPOINT, "if good == alive:", "if alive.satisfiable():"),
         *("Reached", 'requirement R1 "can get home"', "from `Base.side` no state with `Base.docked` can be reached"),
     ),
     "the first of all goals is enough": Fault(
