@@ -101,16 +101,26 @@ class SupervisedStates:
     """Result of the fixpoint.
 
     `search` is the problem. `controlled` are the states that are reachable under the supervisor; none if the supervisor
-    is empty. If not `restricted`, synthesis removed no state. The rounds are computed on demand: only explanations need
-    them.
+    is empty. The rounds are computed on demand: only explanations need them.
     """
 
     def __init__(self, search: Search, controlled: Diagram, reached: Diagram | None = None) -> None:
         """Store the controlled states, and if known the states that are reachable under the requirements."""
         self.search = search
         self.controlled = controlled
-        self.restricted = reached is None or reached != controlled
         self._reached = reached
+
+    @cached_property
+    def restricted(self) -> bool:
+        """Whether synthesis removed a state that is reachable under the requirements."""
+        if self._reached is not None:
+            return self._reached != self.controlled
+        outside = ~self.controlled
+        return (self.search.encoding.initial & outside).satisfiable() or any(
+            (step.image(self.controlled) & outside).satisfiable()
+            for relation, step in self.search.moves
+            if relation.event.controllable
+        )
 
     @cached_property
     def reached(self) -> Diagram:
