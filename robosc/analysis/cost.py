@@ -106,7 +106,7 @@ def explain_cost(model: sct.SupervisoryControlModel, tuning: Tuning, *, memory: 
     return Cost(
         counts,
         statistics,
-        [domain.element for domain in layout.domains.values()],
+        [domain.element for domain in layout.domains.values() if domain.levels],
         [(elements[vertex].element, degree[vertex]) for vertex in central],
         len(couplings),
         [

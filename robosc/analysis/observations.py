@@ -259,13 +259,13 @@ class Observer:
         return self._system.controlled & relation.forbidden_by(requirement)
 
     def _never_enabled(self) -> Iterator[NeverEnabled]:
-        controlled, uncontrolled = self._system.controlled, self._system.uncontrolled
+        controlled = self._system.controlled
         for event, permission in self._permissions.items():
             if event.kind not in (sct.EventKind.trigger, sct.EventKind.tau) or permission.guard.everEnabled:
                 continue
             relation = permission.relation
             in_sight = controlled & relation.enabled
-            enabled = in_sight if in_sight.satisfiable() else uncontrolled & relation.enabled
+            enabled = in_sight if in_sight.satisfiable() else self._system.uncontrolled & relation.enabled
             forbidden = not (enabled & relation.requirement).satisfiable()
             if not enabled.satisfiable() or not (in_sight.satisfiable() or forbidden):
                 plants = never_ready(relation, controlled)

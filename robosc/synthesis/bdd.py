@@ -31,7 +31,7 @@ _LIBRARY = (1 << 30) + (192 << 20)
 _FIRST_CAPACITY = 1 << 18
 #: Allocating room takes time: diagrams of at most `_FEW_LEVELS` levels begin with `_SMALL_CAPACITY` nodes. Diagrams of
 #: at least `_MANY_LEVELS` levels begin with `_LARGE_CAPACITY` nodes.
-_FEW_LEVELS, _SMALL_CAPACITY, _MANY_LEVELS, _LARGE_CAPACITY = 64, 1 << 15, 512, 1 << 20
+_FEW_LEVELS, _SMALL_CAPACITY, _MANY_LEVELS, _LARGE_CAPACITY = 64, 1 << 15, 200, 1 << 20
 #: Growth factor of the capacity. A restart takes more time than unused room, so the factor is high.
 _GROWTH = 8
 #: Share of the capacity shortly before the library collects garbage by itself, and the largest share that may still be

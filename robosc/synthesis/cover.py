@@ -30,6 +30,8 @@ Product: TypeAlias = "dict[Domain, Ranges]"
 _Literal: TypeAlias = "tuple[Domain, Diagram]"
 #: Maximum number of conditions of an expression that is worth the time of a cover.
 _READABLE = 64
+#: Maximum number of conditions of an expression. It takes about a gigabyte.
+_WRITABLE = 500_000
 #: Maximum number of parts of the search for an expression, for each condition that it may have.
 _SEARCHED = 100
 
@@ -41,7 +43,8 @@ def separating_expression(
 
     Neither set is empty, and both depend on `domains` only. If the expression has more conditions on an element than
     `longest`, the result is None. A short expression is a cover of `inside` or a negated cover of `outside`, whichever
-    is shorter. A long one is nested, since a cover would take much longer.
+    is shorter. A long one is nested, since a cover would take much longer. Raises MemoryError if it is too long to be
+    written at all.
     """
     factoring = Factoring(encoding, domains, inf if longest is None else _SEARCHED * longest)
     try:
@@ -51,6 +54,8 @@ def separating_expression(
     shorter = min(factored, excluded, key=lambda candidate: candidate.length)
     if longest is not None and shorter.length > longest:
         return None
+    if shorter.length > _WRITABLE:
+        raise MemoryError(f"a guard with {shorter.length:,} conditions is too long to be written")
     if shorter.length > _READABLE:
         expression = expression_of(shorter)
         return expression if shorter is factored else ex.Negation(operand=expression)

@@ -449,13 +449,21 @@ def _elements(plant: sct.Plant) -> Iterator[Element]:
 
 
 def element_name(element: Element) -> str:
-    """Return the name of an element in a file of `--order`: that of its plant, a dot and its own if it has one."""
-    return element.name if isinstance(element, sct.Plant) else f"{element.eContainer().name}.{element.name}"
+    """Return the name of an element in a file of `--order`: that of its plant, a dot and its own if it has one.
+
+    The new value of an input variable of CIF has the name of the variable with a `+`, as in CIF's own output.
+    """
+    if isinstance(element, sct.Plant):
+        return element.name
+    plant = element.eContainer()
+    is_new = isinstance(element, sct.Input) and element.name in {variable.name for variable in plant.variables}
+    return f"{plant.name}.{element.name}{'+' if is_new else ''}"
 
 
 def element_names(model: sct.SupervisoryControlModel) -> list[str]:
-    """Return the names of all elements, in the order of the text."""
-    return [element_name(element) for plant in model.plants for element in _elements(plant)]
+    """Return the names of all elements with at least two values, in the order of the text."""
+    elements = (element for plant in model.plants for element in _elements(plant))
+    return [element_name(element) for element in elements if domain_size(element) > 1]
 
 
 def _order(model: sct.SupervisoryControlModel, index: Mapping[Element, int], order: Order) -> list[int]:

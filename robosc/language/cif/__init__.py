@@ -132,6 +132,6 @@ class _Files:
             elif name not in _MEANINGLESS:
                 message = f"the annotation `{annotation.name}` is unknown: synthesis ignores it"
                 fault = CifFaultError(
-                    annotation, "cif-construct", message, "leave it out, unless it has no requirement"
+                    annotation, "cif-construct", message, "leave it out, or check that it is no requirement"
                 )
                 self.findings.append(fault.warning())

@@ -45,7 +45,8 @@ def tuning(command: Callable[..., None]) -> Callable[..., None]:
         show_default=True,
         expose_value=False,
         callback=_keep,
-        help="Search for good states among the reachable ones (forward) or among all (backward).",
+        help="Search for good states among the reachable ones (forward), those reachable without a state from which a"
+        " violation cannot be prevented (safe), or all (backward).",
     )
     return order(strategy(command))
 

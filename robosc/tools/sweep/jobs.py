@@ -78,7 +78,7 @@ def inputs_of(model: str, paths: Paths) -> dict[str, bytes]:
     """Return the contents of a model and all that it imports, by absolute path. Raises OSError."""
     content = files.read(model)
     named = [model]
-    if b"import" in content:
+    if b"import" in content or model.endswith(".automata"):
         with files.record_inputs():
             read(model, Paths(paths.libraries), Report())
             named += files.inputs()
