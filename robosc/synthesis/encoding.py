@@ -461,9 +461,8 @@ def element_name(element: Element) -> str:
 
 
 def element_names(model: sct.SupervisoryControlModel) -> list[str]:
-    """Return the names of all elements with at least two values, in the order of the text."""
-    elements = (element for plant in model.plants for element in _elements(plant))
-    return [element_name(element) for element in elements if domain_size(element) > 1]
+    """Return the names of all elements, in the order of the text."""
+    return [element_name(element) for plant in model.plants for element in _elements(plant)]
 
 
 def _order(model: sct.SupervisoryControlModel, index: Mapping[Element, int], order: Order) -> list[int]:
