@@ -6,6 +6,7 @@ from collections import Counter
 from typing import TYPE_CHECKING, Any
 
 from benchmarks.dcs_families import CHAINS, DCS, FAMILIES
+from benchmarks.scaling_page import short_number
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -190,19 +191,11 @@ def _size(task: Task) -> str:
 def _costs(result: Result) -> list[str]:
     """Return the states, seconds, operations and nodes of a done instance."""
     return [
-        _number(result["states"]),
+        short_number(result["states"]),
         f"{result['synthesis']:.2f}",
         f"{result['operations']:,}",
         f"{result['nodes']:,}",
     ]
-
-
-def _number(value: int) -> str:
-    """Return a short number with commas, and a long one as its first digits and a power of ten."""
-    if value < 10**9:
-        return f"{value:,}"
-    power = len(str(value)) - 1
-    return f"{value // 10 ** (power - 1) / 10:.1f}·10^{power}"
 
 
 def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:

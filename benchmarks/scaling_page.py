@@ -91,7 +91,7 @@ def _largest(families: Results) -> str:
                 FAMILIES[name].title,
                 f"{point['n']}",
                 f"{point['lines']:,}",
-                _number(point["states"]),
+                short_number(point["states"]),
                 f"{_synthesis_seconds(point):.1f}",
                 f"{_all_seconds(point):.1f}",
                 f"{point['memory']:.0f}",
@@ -148,7 +148,7 @@ def _transform(points: Sequence[Results]) -> str:
     return _table(["components", "lines", "seconds", "MB", "written"], rows)
 
 
-def _number(value: int) -> str:
+def short_number(value: int) -> str:
     """Return a short number with commas, and a long one as its first digits and a power of ten."""
     if value < 10**9:
         return f"{value:,}"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from robosc.synthesis import MEMORY, Statistics, count, use_encoding
 from robosc.synthesis.encoding import BitLayout, couplings_of
@@ -73,7 +73,7 @@ class _Observed(Statistics):
             self.nodes_of[step.events] += result.node_count()
             return result
 
-        return observed
+        return cast("Follow", observed)
 
     def replace_costs(self, other: Statistics) -> None:
         super().replace_costs(other)

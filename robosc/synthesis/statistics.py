@@ -6,15 +6,14 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from enum import StrEnum
 from time import perf_counter, process_time
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from robosc.synthesis.bdd import Diagram
-    from robosc.synthesis.relation import SymbolicStep
 
-    Follow = Callable[[SymbolicStep, Diagram], Diagram]
+#: Function of a step and a set of states.
+Follow = TypeVar("Follow", bound="Callable[..., Any]")
 
 
 class Phase(StrEnum):
