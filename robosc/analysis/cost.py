@@ -68,7 +68,7 @@ class _Observed(Statistics):
 
     def followed(self, follow: Follow) -> Follow:
         def observed(step: SymbolicStep, states: Diagram) -> Diagram:
-            result = follow(step, states)
+            result: Diagram = follow(step, states)
             self.operations_of[step.events] += 1
             self.nodes_of[step.events] += result.node_count()
             return result
