@@ -77,7 +77,9 @@ class Statistics:
 
     def another(self) -> Self:
         """Return statistics of the same kind for another computation, which begins with the same operations."""
-        return type(self)(operations=self.operations)
+        other = type(self)()
+        other.operations = self.operations
+        return other
 
     def followed(self, follow: Follow) -> Follow:
         """Return a function that follows steps as `follow` does, and records their costs if they are observed."""
