@@ -24,13 +24,13 @@ from robosc.base.diagnostics import Diagnostic, ModelError, Severity
 from robosc.model import sct
 from robosc.model.places import place
 from robosc.model.semantics.roles import event_name, is_from_cif
-from robosc.synthesis.bdd import Diagrams, with_enough_memory
+from robosc.synthesis.bdd import Diagrams, nodes_in, with_enough_memory
 from robosc.synthesis.cover import separating_expression
 from robosc.synthesis.encoding import BitLayout, Encoding, Order
 from robosc.synthesis.fixpoint import Search, SupervisedStates, reachable
 from robosc.synthesis.guards import Permission, permission
 from robosc.synthesis.projection import Projection
-from robosc.synthesis.race import Race, Strategy
+from robosc.synthesis.race import Race, Strategy, StrategyChosenError
 from robosc.synthesis.relation import (
     EventRelation,
     event_relations,
@@ -67,6 +67,8 @@ __all__ = [
 
 #: Default memory limit of the decision diagrams, in bytes.
 MEMORY = 4 << 30
+#: Share of the memory limit for the diagrams of a second strategy: one in this number.
+_RIVAL = 4
 #: Effort limit for the bound on internal events, in visited nodes. It takes some tenths of a second.
 COMPLETION_EFFORT = 2_000_000
 
@@ -260,13 +262,24 @@ def _with_states(
     with statistics.during(Phase.ORDER):
         layout = BitLayout(model, tuning.order)
     race = Race(tuning.strategy)
-    return with_enough_memory(
-        lambda capacity: use(_solve(model, layout, capacity, statistics, race)), memory, layout.levels
-    )
+
+    def solve_within(capacity: int) -> _Solution:
+        return _solve(layout, capacity, min(capacity, nodes_in(memory) // _RIVAL), statistics, race)
+
+    def run(capacity: int) -> T:
+        try:
+            solution = solve_within(capacity)
+        except StrategyChosenError:
+            solution = None
+        # After the handler, the diagrams of the other strategies are released.
+        return use(solution or solve_within(capacity))
+
+    return with_enough_memory(run, memory, layout.levels)
 
 
-def _search(model: sct.SupervisoryControlModel, layout: BitLayout, capacity: int, statistics: Statistics) -> Search:
+def _search(layout: BitLayout, capacity: int, statistics: Statistics) -> Search:
     """Return the problem of the fixpoint, with room for `capacity` nodes."""
+    model = layout.model
     encoding = Encoding(layout, Diagrams(layout.levels, capacity, statistics))
     relations = event_relations(model, encoding)
     _refuse_overlapping(relations)
@@ -275,23 +288,24 @@ def _search(model: sct.SupervisoryControlModel, layout: BitLayout, capacity: int
     return Search(encoding, relations, required_moves(relations), violating, states_to_reach)
 
 
-def _solve(
-    model: sct.SupervisoryControlModel, layout: BitLayout, capacity: int, statistics: Statistics, race: Race
-) -> _Solution:
-    """Compute the supervised states, with room for `capacity` nodes."""
+def _solve(layout: BitLayout, capacity: int, rival_capacity: int, statistics: Statistics, race: Race) -> _Solution:
+    """Compute the supervised states, with room for `capacity` nodes and `rival_capacity` of another strategy.
+
+    Raises StrategyChosenError if this has to begin again with the chosen strategy.
+    """
     statistics.begin_again()
     with statistics.during(Phase.ENCODE):
-        search = _search(model, layout, capacity, statistics)
+        search = _search(layout, capacity, statistics)
     with statistics.during(Phase.FIXPOINT):
         uncontrolled = uncontrolled_states = None
-        if not is_from_cif(model):
+        if not is_from_cif(layout.model):
             encoding = search.encoding
             uncontrolled = reachable(
                 encoding.diagrams, steps(plant_moves(search.relations)), encoding.initial, encoding.diagrams.true
             )
             uncontrolled_states = encoding.count_plants(uncontrolled)
         before = statistics.another()
-        states = race.supervise(search, lambda: _search(model, layout, capacity, before.another()))
+        states = race.supervise(search, lambda: _search(layout, rival_capacity, before.another()))
     statistics.strategy = race.strategy
     if states.search is search:
         return _Solution(states, uncontrolled, uncontrolled_states)

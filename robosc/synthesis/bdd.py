@@ -134,13 +134,18 @@ def _refuse_where_addresses_lack(capacity: int) -> None:
         )
 
 
+def nodes_in(memory: int) -> int:
+    """Return the number of nodes that take a number of bytes."""
+    return memory // _BYTES_PER_NODE
+
+
 def with_enough_memory(run: Callable[[int], T], memory: int, levels: int | None = None) -> T:
     """Run `run` with a capacity in nodes; restart it with a larger one as long as it runs out of room.
 
     The first capacity is smaller for few `levels` and larger for many. `memory` bounds the bytes of the nodes and those
     of the whole process. Raises MemoryError beyond it, and if the system allows too few addresses.
     """
-    most = memory // _BYTES_PER_NODE
+    most = nodes_in(memory)
     capacity = _FIRST_CAPACITY
     if levels is not None and levels <= _FEW_LEVELS:
         capacity = min(capacity, _SMALL_CAPACITY)

@@ -17,6 +17,7 @@ from robosc.synthesis.fixpoint import (
     supervise_forwards,
     supervise_within,
 )
+from robosc.synthesis.memory import TooFewAddressesError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -41,6 +42,10 @@ class Strategy(StrEnum):
     BACKWARD = "backward"
 
 
+class StrategyChosenError(Exception):
+    """The race has chosen a strategy that needs a new search. All diagrams of the old ones can be released first."""
+
+
 class Race:
     """Computation of the supervised states with the best strategy.
 
@@ -56,7 +61,8 @@ class Race:
 
         Unless a strategy is chosen, the forward strategy runs on `search`. If it takes long, the backward strategy runs
         in turns with it on `another()`, a search with diagrams of its own. If that takes long, too, the safe strategy
-        replaces both, provided that the safe states are known and that there are violations.
+        replaces both, provided that the safe states are known and that there are violations. Raises
+        StrategyChosenError to begin again with it.
         """
         if self.strategy is None and search.encoding.layout.wide:
             # Backwards, the search would count through all values of wide integers.
@@ -67,19 +73,25 @@ class Race:
             return supervise_within(search, completed(good_states(search, completed(safe_states(search)))))
         if self.strategy is Strategy.SAFE:
             return completed(supervise_forwards(search, completed(safe_states(search))))
-        forward = _Runner(search, supervise_forwards(search))
-        backward: _Backward | None = None
+        return self._race(_Runner(search, supervise_forwards(search)), another)
+
+    def _race(self, forward: _Runner[SupervisedStates], another: Callable[[], Search]) -> SupervisedStates:
         turn = _HEAD_START
+        backward: _Backward | None = None
         while not forward.advance(turn):
             if self.strategy is None:
-                backward = backward or _Backward(another())
+                try:
+                    backward = backward or _Backward(another())
+                except TooFewAddressesError:
+                    self.strategy = Strategy.FORWARD
+                    continue
                 if backward.advance(turn):
                     self.strategy = Strategy.BACKWARD
                     return supervise_within(backward.search, backward.result)
-                if backward.is_out_of_room or turn > _PATIENCE * len(search.moves):
-                    if backward.knows_safe and search.violating.satisfiable():
+                if backward.is_out_of_room or turn > _PATIENCE * len(forward.search.moves):
+                    if backward.knows_safe and forward.search.violating.satisfiable():
                         self.strategy = Strategy.SAFE
-                        return self.supervise(another(), another)
+                        raise StrategyChosenError
                     self.strategy, backward = Strategy.FORWARD, None
             turn *= 2
         self.strategy = Strategy.FORWARD

@@ -19,7 +19,7 @@ from robosc.tools.cli.options import chosen_synthesizer
 
 if TYPE_CHECKING:
     from robosc.language.configuration import Configuration
-    from robosc.synthesis import Synthesis
+    from robosc.synthesis import Synthesis, Tuning
     from robosc.tools.cli.options import Paths
     from robosc.tools.cli.report import Report
 
@@ -127,8 +127,12 @@ def read_models(path: str, paths: Paths, report: Report, *, cif: bool = False) -
     return Models(root)
 
 
-def supervise_models(models: Models, report: Report, *, memory: int | None = None) -> None:
+def supervise_models(
+    models: Models, report: Report, *, memory: int | None = None, tuning: Tuning | None = None
+) -> None:
     """Synthesize the supervisor of the sct model, unless it has one. Warnings about it go to the report.
+
+    The default of `tuning` is that of the call.
 
     With another synthesizer in the call, its supervisor also replaces an existing one. `memory` limits the memory of
     the process in bytes; the default is that of synthesis. Ends the report if there are errors. Raises
@@ -142,7 +146,7 @@ def supervise_models(models: Models, report: Report, *, memory: int | None = Non
     if supervise_otherwise(models.sct, memory=memory) is None and models.sct.supervisor is None:
         with show_progress(models.sct) as statistics:
             supervision = supervise(
-                models.sct, memory=memory or MEMORY, statistics=statistics, tuning=chosen_tuning(models.sct)
+                models.sct, memory=memory or MEMORY, statistics=statistics, tuning=tuning or chosen_tuning(models.sct)
             )
         report.add(supervision.findings)
         report.stop_on_errors()

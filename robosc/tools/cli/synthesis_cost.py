@@ -24,14 +24,18 @@ _ROWS = 10
 _NAMED = 3
 
 
-def show_cost(model: sct.SupervisoryControlModel, tuning: Tuning, memory: int, times: int, *, as_json: bool) -> None:
-    """Print what makes the synthesis of a model expensive. States count `times` times."""
+def show_cost(model: sct.SupervisoryControlModel, tuning: Tuning, memory: int, times: int, *, as_json: bool) -> bool:
+    """Print what makes the synthesis of a model expensive. States count `times` times.
+
+    Returns whether there is a supervisor.
+    """
     with progress("following the cost of synthesis"):
         cost = explain_cost(model, tuning, memory=memory)
     if as_json:
         put(json.dumps(_as_json(model, cost, times), indent=2))
     else:
         _show(model, cost, times)
+    return cost.counts.controlled_states > 0
 
 
 def _as_json(model: sct.SupervisoryControlModel, cost: Cost, times: int) -> dict[str, Any]:

@@ -90,7 +90,8 @@ def command(
         times = input_values(plants) if count_inputs else 1
         assumption = None if without is None else _assumption(plants, without)
         if explain_cost:
-            show_cost(plants, chosen_tuning(plants), megabytes << 20, times, as_json=as_json)
+            if not show_cost(plants, chosen_tuning(plants), megabytes << 20, times, as_json=as_json):
+                raise click.exceptions.Exit(EMPTY_SUPERVISOR)
             return
         if counts:
             _count(plants, megabytes << 20, times, as_json=as_json)

@@ -84,4 +84,4 @@ def _order(chosen: str, model: sct.SupervisoryControlModel) -> Order:
             unknown.append(f"{chosen}:{number}:{line.index(name) + 1}: the model has no element `{name}`; {hint}")
     if unknown:
         raise CallError("\n".join(unknown))
-    return names
+    return tuple(dict.fromkeys(names))

@@ -20,7 +20,7 @@ from robosc.tools.cli.options import Paths, configuration, jobs, model, paths, r
 from robosc.tools.cli.progress import progress
 from robosc.tools.cli.reading import read_configuration, read_models, supervise_models
 from robosc.tools.cli.report import Report
-from robosc.tools.cli.tuning import tuning
+from robosc.tools.cli.tuning import chosen_tuning, tuning
 from robosc.tools.workers import completed
 
 if TYPE_CHECKING:
@@ -30,6 +30,10 @@ if TYPE_CHECKING:
     from robosc.language.configuration import Configuration
     from robosc.m2t.models import Models
     from robosc.model import sct
+    from robosc.synthesis import Tuning
+
+    #: Model, configuration, folders, tuning, and the time that identifies the call.
+    _Call = tuple[str, str | None, Paths, Tuning, int]
 
 _STYLES = {
     Outcome.PROVED: "green",
@@ -85,7 +89,7 @@ def command(
             verdicts = (
                 verify(models, settings, steps.append)
                 if jobs == 1
-                else _verify_in_processes(model, chosen, paths, jobs)
+                else _verify_in_processes((model, chosen, paths, chosen_tuning(models.sct), time_ns()), jobs)
             )
         report.add(finding for verdict in verdicts for finding in verdict.findings)
     if junit:
@@ -99,29 +103,30 @@ def command(
         raise click.exceptions.Exit(ERRORS_FOUND)
 
 
-def _verify_in_processes(model: str, chosen: str | None, paths: Paths, jobs: int) -> list[Verdict]:
+def _verify_in_processes(call: _Call, jobs: int) -> list[Verdict]:
     """Return the verdicts on a model without errors. Each process reads and synthesizes it again."""
     parts: dict[str, list[Verdict]] = {}
-    began = time_ns()
-    for (*_, name), verdicts in completed(_part, [(model, chosen, paths, began, name) for name in PARTS], jobs):
+    for (*_, name), verdicts in completed(_part, [(*call, name) for name in PARTS], jobs):
         if verdicts is None:
             raise CallError(f"the process that verified {name} was killed; use fewer --jobs if memory is short")
         parts[name] = verdicts
     return [verdict for name in PARTS for verdict in parts[name]]
 
 
-def _part(task: tuple[str, str | None, Paths, int, str]) -> list[Verdict]:
+def _part(task: tuple[str, str | None, Paths, Tuning, int, str]) -> list[Verdict]:
     *supervised, name = task
     return PARTS[name](*_supervised(*supervised))
 
 
 @lru_cache(maxsize=1)
-def _supervised(model: str, chosen: str | None, paths: Paths, _began: int) -> tuple[Models, Configuration]:
+def _supervised(
+    model: str, chosen: str | None, paths: Paths, tuning: Tuning, _began: int
+) -> tuple[Models, Configuration]:
     """Return a model and its configuration, once in each process of a call, which `_began` identifies."""
     with Report("none") as report:
         models = read_models(model, paths, report, cif=True)
         settings = read_configuration(model, chosen, report)
-        supervise_models(models, report)
+        supervise_models(models, report, tuning=tuning)
     return models, settings
 
 

@@ -4,9 +4,15 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
+
+import robosc.analysis.supervise
+from robosc.analysis.verify import PARTS
+from robosc.synthesis import Strategy, Tuning
+from robosc.tools.cli import verify as command
+from robosc.tools.cli.options import Paths
 
 from .conftest import DOOR
 
@@ -37,3 +43,18 @@ def test_findings_and_an_empty_supervisor_are_those_of_one_process(run: Run, stu
         answers = [run("verify", file, "--jobs", jobs) for jobs in ("1", "2")]
         assert [answer.exit_code for answer in answers] == [status, status]
         assert answers[0].output == answers[1].output
+
+
+def test_each_process_synthesizes_with_the_tuning_of_the_call(monkeypatch: pytest.MonkeyPatch, door: Path) -> None:
+    tunings = []
+    supervise = robosc.analysis.supervise.supervise
+
+    def observed(*arguments: Any, **options: Any) -> Any:
+        tunings.append(options["tuning"])
+        return supervise(*arguments, **options)
+
+    monkeypatch.setattr("robosc.analysis.supervise.supervise", observed)
+    tuning = Tuning("text", Strategy.BACKWARD)
+    verdicts = command._part((str(door), None, Paths(), tuning, 0, next(iter(PARTS))))
+    assert tunings == [tuning]
+    assert verdicts
