@@ -15,7 +15,7 @@ Source: language tutorial of CIF, "Channels"; `linearize-product` of CIF's `cif2
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from itertools import product
+from itertools import islice, product
 from typing import TYPE_CHECKING, Any
 
 from robosc.language.cif.faults import CifFaultError, construct
@@ -37,6 +37,8 @@ if TYPE_CHECKING:
 
 #: Type of a channel that transfers no data.
 VOID = "void"
+#: Maximum number of events that a channel becomes.
+_MOST = 10_000
 _WORDS = {"!": "sends over", "?": "receives from", "": "synchronizes with"}
 
 
@@ -151,7 +153,12 @@ class Channels:
                     raise CifFaultError(uses[second].node, "type", message, "use two automata")
             for use in uses:
                 users[use][scope] = [edge for edge in own if edge.event is channel and edge.use == use]
-        pairs = list(_pairs(channel, users["!"], users["?"]))
+        pairs = list(islice(_pairs(channel, users["!"], users["?"]), _MOST + 1))
+        if len(pairs) > _MOST:
+            message = f"the uncontrollable channel `{declared.name}` has more than {_MOST} pairs of sender and receiver"
+            with self._names.reporting():
+                raise CifFaultError(declared.node, "cif-construct", message, "divide it into several channels")
+            return
         names = Names(declared.scope.names)
         for senders, receivers in pairs:
             event = channel

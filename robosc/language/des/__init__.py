@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
+from os.path import normpath
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -115,7 +116,7 @@ def _read_list(source: Source, system: System, texts: dict[str, str], documents:
             continue
         with system.reporting():
             place = source.text.source(start, start + len(line))
-            file = source.path.parent / name.strip()
+            file = Path(normpath(source.path.parent / name.strip()))
             if role not in _ROLES or not name.strip():
                 message = f"found `{role}`, expected `plant` or `requirement` and a file"
                 raise FaultError(place, "syntax", message, "write `plant machine.gen`")
@@ -127,6 +128,8 @@ def _read_list(source: Source, system: System, texts: dict[str, str], documents:
             except (OSError, ValueError) as error:  # A path may contain a null character.
                 message = f"the file `{file}` cannot be read: {getattr(error, 'strerror', None) or error}"
                 raise FaultError(place, "unresolved-reference", message) from None
+            if str(file) in texts:
+                raise FaultError(place, "automata-declaration", f"the list names `{file}` twice", "name it once")
             texts[str(file)] = part.text.content
             system.findings += findings
             if not findings:

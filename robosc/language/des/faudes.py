@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from robosc.base.diagnostics import ModelError
 from robosc.language.des.automata import Edge, FaultError, State, construct
 
 if TYPE_CHECKING:
@@ -16,7 +18,7 @@ if TYPE_CHECKING:
     from robosc.model.places import Place
 
 _TOKEN = re.compile(
-    r"""(?P<blank>\s+|%[^\n]*|<!--[\s\S]*?-->|<[?!][^>]*>)
+    r"""(?P<blank>\s+|%[^\n]*|<!--[\s\S]*?-->|<(?!!--)[?!][^>]*>)
     |(?P<section><(?P<end>/?)(?P<name>[A-Za-z_][\w:]*)(?P<attributes>(?:[^<>"']|"[^"]*"|'[^']*')*?)(?P<alone>/?)>)
     |(?P<word>(?:"[^"\n]*"|'[^'\n]*')(?:\#[0-9]+)?|[^\s<>"'%]+)""",
     re.VERBOSE,
@@ -52,8 +54,8 @@ _KNOWN = frozenset(
 _IGNORED = frozenset(["Observable", "Forcible", "Abstraction", "Highlevel", "Name"])
 #: Sections that declare states.
 _STATE_SECTIONS = ("States", "StateSet")
-#: Maximum number of states of an automaton with ranges of numbers.
-_MOST = 100_000
+#: Maximum number of states of an automaton with ranges of numbers, and of sections inside each other.
+_MOST, _DEEPEST = 100_000, 50
 
 
 @dataclass(frozen=True)
@@ -69,7 +71,7 @@ class _Token:
 
 
 def read(source: Source, system: System, *, requirement: bool) -> None:
-    """Add the generator of a file to a system. Raises FaultError if it is unusable."""
+    """Add the generator of a file to a system. Raises FaultError or ModelError if it is unusable."""
     _Generator(source, system, requirement=requirement).run(list(_tokens(source)))
 
 
@@ -84,6 +86,8 @@ class _Generator:
         self._event: Event | None = None
         self._has_states = False
         self._states: dict[str, State] = {}
+        #: Number of states in the ranges of each section.
+        self._ranged = Counter[str]()
         self._words: dict[str, list[_Token]] = {"TransRel": [], "InitStates": [], "MarkedStates": []}
 
     def run(self, tokens: list[_Token]) -> None:
@@ -107,6 +111,8 @@ class _Generator:
                         raise construct(token.place, f"the section `{token.text}`", hint)
                     (self._section if token.section else self._word)(token, inside)
             if token.section and not token.alone:
+                if len(open_sections) >= _DEEPEST:
+                    raise FaultError(token.place, "syntax", f"more than {_DEEPEST} sections are inside each other")
                 open_sections.append(token)
         if open_sections:
             raise FaultError(open_sections[-1].place, "syntax", f"`<{open_sections[-1].text}>` is not closed")
@@ -183,8 +189,10 @@ class _Generator:
             raise FaultError(token.place, "syntax", "a range has two numbers of states") from None
         finally:
             pending.clear()
-        if last - first + len(self._automaton.states) >= _MOST:
-            raise construct(token.place, f"more than {_MOST} states", "write the automaton as several ones")
+        self._ranged[section] += max(0, last - first + 1)
+        if self._ranged[section] > _MOST:
+            fault = construct(token.place, f"more than {_MOST} states", "write the automaton as several ones")
+            raise ModelError([fault.finding()])  # It ends the reading: each further range would be a fault.
         if section not in (*_STATE_SECTIONS, "InitStates", "MarkedStates"):
             raise FaultError(token.place, "syntax", f"`{section}` has no ranges of states")
         for number in range(first, last + 1):
@@ -242,6 +250,8 @@ def _tokens(source: Source) -> Iterator[_Token]:
         match = _TOKEN.match(content, position)
         if match is None:
             message = f"`{content[position]}` is not allowed here"
+            if content.startswith("<!--", position):
+                message = "the comment has no end `-->`"
             raise FaultError(source.text.source(position, position + 1), "syntax", message)
         position = match.end()
         place = source.text.source(match.start(), match.end())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from codecs import BOM_UTF16_BE, BOM_UTF16_LE
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
     from robosc.language.text import Documents
 
 _ENCODING = re.compile(rb"""\A\s*<\?xml\b[^>]*?\bencoding\s*=\s*["']([A-Za-z0-9._-]+)["']""")
+#: Encodings of one table: others of Python are no encodings of text, or slow.
+_CODECS = re.compile(rb"utf-8|us-ascii|iso-8859-[0-9]+|windows-125[0-9]", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
@@ -54,7 +57,10 @@ def open_source(path: Path, name: str, documents: Documents) -> tuple[Source, li
     """
     content = documents.read(path)
     encoding = _ENCODING.match(content)
-    if encoding is not None:
+    if content[:2] in (BOM_UTF16_LE, BOM_UTF16_BE):
+        with suppress(UnicodeError):
+            content = content.decode("utf-16").encode("utf-8")
+    elif encoding is not None and _CODECS.fullmatch(encoding[1]):
         with suppress(LookupError, UnicodeError):  # `decode` reports the first byte that is not UTF-8.
             content = content.decode(encoding[1].decode()).encode("utf-8")
     text, findings = decode(str(path), content, name)

@@ -32,11 +32,11 @@ def read(source: Source, system: System, *, requirement: bool) -> None:
         with system.reporting():
             match element.name:
                 case "state":
-                    states[attribute(element, "id", source)] = state = _state(element, source)
-                    automaton.states[attribute(element, "id", source)] = state
+                    number = _new(element, "unique-state", states, source)
+                    states[number] = automaton.states[number] = _state(element, source)
                 case "event":
                     event = _event(element, source, system, requirement=requirement)
-                    events[attribute(element, "id", source)] = event
+                    events[_new(element, "automata-declaration", events, source)] = event
                     automaton.alphabet[event] = None
     for element in (child for part in data for child in part.children if child.name == "transition"):
         with system.reporting():
@@ -44,6 +44,15 @@ def read(source: Source, system: System, *, requirement: bool) -> None:
                 raise construct(source.place(element), "transitions without an event", "give it an event")
             start, end = (_named(element, role, states, source) for role in ("source", "target"))
             automaton.edges.append(Edge(start, _named(element, "event", events, source), end, source.place(element)))
+
+
+def _new(element: Element, rule: str, known: Mapping[str, object], source: Source) -> str:
+    """Return the id of a state or an event. Raises FaultError if another one has it."""
+    number = attribute(element, "id", source)
+    if number in known:
+        message = f"there are two {element.name}s with the id `{number}`"
+        raise FaultError(source.place(element, "id"), rule, message, "give one of them another id")
+    return number
 
 
 def _state(element: Element, source: Source) -> State:

@@ -31,8 +31,9 @@ _CONTROLLABLE = {"CONTROLLABLE": True, "UNCONTROLLABLE": False}
 _REQUIREMENT = {"PLANT": False, "SPEC": True, "SUPERVISOR": True}
 _ASSIGNMENTS = {"+=": "+", "-=": "-", "*=": "*", "/=": "/", "%=": "%", "&=": "&", "|=": "|"}
 _NAMES = ("SimpleIdentifier", "IndexedIdentifier", "QualifiedIdentifier")
-#: Maximum number of automata after `foreach` is expanded, of edges, and of values that are tried for an initial value.
-_MOST, _MOST_EDGES, _MOST_TRIED = 20_000, 1_000_000, 100_000
+#: Maximum number of automata after `foreach` is expanded, of edges, of values that are tried for an initial value, and
+#: of loops inside each other.
+_MOST, _MOST_EDGES, _MOST_TRIED, _DEEPEST = 20_000, 1_000_000, 100_000, 50
 
 
 @dataclass(eq=False)
@@ -68,6 +69,7 @@ class _Module:
 
     def run(self, module: Element) -> None:
         system, place = self._system, self._source.place
+        self._check_loops(module)
         for parameter in _in_lists(module, "ParameterList"):
             with system.reporting():
                 raise construct(place(parameter), "a module with parameters", "write the module without them")
@@ -77,6 +79,7 @@ class _Module:
                 if expression is None:
                     raise FaultError(place(alias), "syntax", "the constant has no value")
                 self._names.constants[attribute(alias, "Name", self._source)] = expression
+        self._names.compute()
         for declaration in _in_lists(module, "EventDeclList"):
             with system.reporting():
                 self._event(declaration)
@@ -100,6 +103,17 @@ class _Module:
             with system.reporting():
                 text = self._names.condition(node, bindings).text
                 system.predicates.append((f"marked {text};", variable.place))
+
+    def _check_loops(self, module: Element) -> None:
+        """Raise FaultError if too many loops are inside each other."""
+        pending = [(module, 0)]
+        while pending:
+            node, depth = pending.pop()
+            depth += node.name.startswith("Foreach")
+            if depth > _DEEPEST:
+                what = f"more than {_DEEPEST} loops inside each other"
+                raise construct(self._source.place(node), what, "write fewer loops")
+            pending += [(child, depth) for child in node.children]
 
     # Events
 
@@ -140,7 +154,7 @@ class _Module:
             for part in (child.children if child.name == "EventList" else [child])
             for label in self._labels(part, bindings)
         ]
-        self._groups[self._own_name(node, bindings)] = labels
+        self._groups[self._own_name(node, bindings)] = list(dict.fromkeys(labels))
 
     def _labels(self, node: Element, bindings: Bindings) -> Iterator[str]:
         """Yield the names of the events and propositions that a label stands for."""
@@ -153,6 +167,7 @@ class _Module:
             if name in self._system.events or name in self._propositions:
                 yield name
             elif name in self._groups:
+                self._names.count(node, len(self._groups[name]))
                 yield from self._groups[name]
             else:
                 raise FaultError(self._source.place(node), "unresolved-reference", f"there is no event `{name}`")
@@ -168,6 +183,7 @@ class _Module:
         if not ranges:
             raise FaultError(self._source.place(node), "syntax", "the loop has no range")
         for value in self._names.values(ranges[0], bindings):
+            self._names.count(node)
             inner = {**bindings, variable: value}
             if all(self._names.constant(guard, inner) for guard in guards):
                 yield inner, body
@@ -231,6 +247,7 @@ class _Module:
 
     def _state(self, node: Element, component: _Component, automaton: Automaton) -> Iterator[str]:
         """Create a state, unless the element is a group; yield its propositions."""
+        self._names.count(node)
         name = attribute(node, "Name", self._source)
         if node.name == "SimpleNode":
             if name in automaton.states:
@@ -324,7 +341,10 @@ class _Module:
         """Return the one value with which a variable can start."""
         predicate = next(_expressions(component.node, "VariableInitial"), None)
         possible: Any = variable.atoms or variable.values
-        if predicate is not None and len(possible) <= _MOST_TRIED:
+        direct = None if predicate is None else self._equal(predicate, variable, component.bindings)
+        if direct is not None:
+            possible = [direct] if direct in possible else []
+        elif predicate is not None and len(possible) <= _MOST_TRIED:
             del self._names.variables[variable.name]  # It has a value in the predicate.
             try:
                 possible = [
@@ -342,6 +362,15 @@ class _Module:
         value: int | str = possible[0]
         return value
 
+    def _equal(self, predicate: Element, variable: Variable, bindings: Bindings) -> Constant | None:
+        """Return the constant of a predicate `x == constant` of a variable x, or None if it has another form."""
+        operands = list(_operands(predicate))
+        if predicate.attributes.get(("", "Operator")) == "==" and len(operands) == 2 and operands[0].name in _NAMES:
+            with suppress(FaultError):
+                if self._names.name(operands[0], bindings) == variable.name:
+                    return self._names.constant(operands[1], bindings)
+        return None
+
     # Edges
 
     def _edges(self, component: _Component, automaton: Automaton) -> None:
@@ -351,6 +380,7 @@ class _Module:
         leaving: dict[tuple[State, Event], list[tuple[int, Edge, dict[Variable, Value]]]] = {}
         for node in (node for node in _in_lists(graph, "EdgeList") if node.name == "Edge"):
             with self._system.reporting():
+                self._names.count(node)
                 sources, target = self._ends(node, graph, automaton)
                 guards, writes = self._step(node, component.bindings)
                 events = [event for child in _in_lists(node, "LabelBlock") for event in self._events(child, component)]

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import operator as operators
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
+from robosc.base.diagnostics import ModelError
 from robosc.language.des.automata import FaultError, construct
 from robosc.language.des.files import attribute
 
@@ -48,6 +50,8 @@ _CONSTANTS: dict[str, Callable[[int, int], int]] = {
 Constant: TypeAlias = "int | str | range | tuple[str, ...]"
 Bindings: TypeAlias = "Mapping[str, Constant]"
 _MOST = 2**31
+#: Maximum number of expressions inside each other, and of steps in the evaluation of a module.
+_DEEPEST, _MOST_STEPS = 50, 2_000_000
 
 
 @dataclass(eq=False)
@@ -109,40 +113,86 @@ class Names:
         self.variables: dict[str, Variable] = {}
         self.enumerations: dict[str, Enumeration] = {}
         self.automata: dict[str, Automaton] = {}
+        #: Values of constants, by name, and the names of those that are being computed.
+        self._computed: dict[str, Constant] = {}
+        self._computing: set[str] = set()
+        self._depth = self._steps = 0
+
+    def count(self, node: Element, steps: int = 1) -> None:
+        """Count steps of the evaluation. Raises ModelError, which ends the reading, if there are too many."""
+        self._steps += steps
+        if self._steps > _MOST_STEPS:
+            what = f"a module whose expansion takes more than {_MOST_STEPS} steps"
+            fault = construct(self.source.place(node), what, "make its ranges and loops smaller")
+            raise ModelError([fault.finding()])
+
+    @contextmanager
+    def _inside(self, node: Element) -> Iterator[None]:
+        """Count an expression inside others. Raises FaultError if it is too deep inside."""
+        self.count(node)
+        if self._depth >= _DEEPEST:
+            what = f"more than {_DEEPEST} expressions inside each other"
+            raise construct(self.source.place(node), what, "divide the expression")
+        self._depth += 1
+        try:
+            yield
+        finally:
+            self._depth -= 1
 
     # Constants
 
-    def constant(self, node: Element, bindings: Bindings, depth: int = 0) -> Constant:
+    def compute(self) -> None:
+        """Compute the constants in their order, so that a long chain of them is not deep. A fault shows at its use."""
+        for name, node in self.constants.items():
+            with suppress(FaultError):
+                self._constant_named(name, node)
+
+    def constant(self, node: Element, bindings: Bindings) -> Constant:
         """Return the value of a constant expression. Raises FaultError if it has none."""
+        with self._inside(node):
+            return self._constant(node, bindings)
+
+    def _constant(self, node: Element, bindings: Bindings) -> Constant:
         match node.name:
             case "IntConstant":
                 return self._number(node)
             case "EnumSetExpression":
-                return tuple(self.name(child, bindings) for child in node.children if child.name in EXPRESSIONS)
+                atoms = (self.name(child, bindings) for child in node.children if child.name in EXPRESSIONS)
+                return tuple(dict.fromkeys(atoms))
             case "SimpleIdentifier" | "IndexedIdentifier" | "QualifiedIdentifier":
-                return self._constant_of(node, bindings, depth)
+                return self._constant_of(node, bindings)
             case "UnaryExpression":
-                operand = self.constant(_only(node, 1, self.source)[0], bindings, depth)
+                operand = self.constant(_only(node, 1, self.source)[0], bindings)
                 operator = attribute(node, "Operator", self.source)
                 if isinstance(operand, int) and operator in ("-", "!"):
                     return -operand if operator == "-" else int(not operand)
             case "BinaryExpression":
-                operands = [self.constant(child, bindings, depth) for child in _only(node, 2, self.source)]
+                operands = [self.constant(child, bindings) for child in _only(node, 2, self.source)]
                 return self._combined(node, *operands)
         raise FaultError(self.source.place(node), "type", "this is not a constant")
 
-    def _constant_of(self, node: Element, bindings: Bindings, depth: int) -> Constant:
+    def _constant_of(self, node: Element, bindings: Bindings) -> Constant:
         """Return the constant of a name: of a loop, of an alias, or an atom."""
         name = self.name(node, bindings)
         if name in bindings:
             return bindings[name]
         if name in self.constants:
-            if depth > len(self.constants):
-                raise FaultError(self.source.place(node), "cyclic-definition", f"`{name}` is computed from itself")
-            return self.constant(self.constants[name], bindings, depth + 1)
+            return self._constant_named(name, node)
         if name in self.variables:
             raise FaultError(self.source.place(node), "type", f"`{name}` is a variable, expected a constant")
         return name
+
+    def _constant_named(self, name: str, node: Element) -> Constant:
+        """Return the value of an alias, which `node` names."""
+        if name not in self._computed:
+            if name in self._computing:
+                raise FaultError(self.source.place(node), "cyclic-definition", f"`{name}` is computed from itself")
+            self._computing.add(name)
+            try:
+                self._computed[name] = self.constant(self.constants[name], {})
+            finally:
+                self._computing.remove(name)
+        return self._computed[name]
 
     def _number(self, node: Element) -> int:
         text = attribute(node, "Value", self.source)
@@ -179,6 +229,10 @@ class Names:
 
     def name(self, node: Element, bindings: Bindings) -> str:
         """Return an identifier as a text, with the values of its indexes. Raises FaultError if it is none."""
+        with self._inside(node):
+            return self._name(node, bindings)
+
+    def _name(self, node: Element, bindings: Bindings) -> str:
         match node.name:
             case "SimpleIdentifier":
                 return attribute(node, "Name", self.source)
@@ -194,6 +248,10 @@ class Names:
 
     def value(self, node: Element, bindings: Bindings) -> Value:
         """Return an expression over variables and states. Raises FaultError if it is wrong."""
+        with self._inside(node):
+            return self._value(node, bindings)
+
+    def _value(self, node: Element, bindings: Bindings) -> Value:
         match node.name:
             case "IntConstant":
                 return number(self._number(node))

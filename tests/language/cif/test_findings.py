@@ -26,6 +26,16 @@ def findings(text: str) -> list[tuple[str, str, str | None]]:
     ]
 
 
+def test_a_channel_has_limited_pairs() -> None:
+    parties = "".join(
+        f"plant s{index}: location: initial; marked; edge c!; end\n"
+        f"plant r{index}: location: initial; marked; edge c?; end\n"
+        for index in range(101)
+    )
+    message = "the uncontrollable channel `c` has more than 10000 pairs of sender and receiver"
+    assert findings(f"uncontrollable void c;\n{parties}") == [("1:21", message, "divide it into several channels")]
+
+
 WRONG = {
     "a word": (
         "controllable c;\n" + _P.replace("edge", "egde"),

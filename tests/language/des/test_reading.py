@@ -221,6 +221,140 @@ def test_what_synthesis_ignores_draws_a_warning() -> None:
     assert reading.model is not None
 
 
+# Modules whose expansion would not end
+
+
+PLANT = component("A", "PLANT", node("a", initial=True), step("a", "a", "go"))
+
+
+def product_of(name: str) -> str:
+    return assign(name, f'<SimpleIdentifier Name="{name}"/>', "*")
+
+
+def aliases(kind: str, contents: list[str]) -> str:
+    body = "".join(
+        f'<{kind} Name="c{index}"><{kind}Expression>{inside}</{kind}Expression></{kind}>\n'
+        for index, inside in enumerate(contents)
+    )
+    return f"<{kind}List>{body}</{kind}List>\n"
+
+
+def nested(start: str, inside: str, end: str, depth: int) -> str:
+    return start * depth + inside + end * depth
+
+
+def test_an_atom_may_be_twice_in_a_set() -> None:
+    kind = COLORS.replace("<SimpleIdentifier", '<SimpleIdentifier Name="red"/><SimpleIdentifier', 1)
+    assert count_of(variable("c", kind, expression("c == red")), PLANT) == 1
+
+
+def test_a_chain_of_constants_is_computed_once() -> None:
+    contents = [NUMBER.format(1)] + [product_of(f"c{index}") for index in range(60)]
+    limit = RANGE.format(NUMBER.format(0), '<SimpleIdentifier Name="c60"/>')
+    edges = step("a", "a", "go", actions=assign("n", expression("n + 1")))
+    assert (
+        count_of(
+            variable("n", limit, expression("n == 0")),
+            component("A", "PLANT", node("a", initial=True), edges),
+            more=aliases("ConstantAlias", contents),
+        )
+        == 2
+    )
+
+
+def test_a_constant_may_not_be_computed_from_itself() -> None:
+    limit = RANGE.format(NUMBER.format(0), '<SimpleIdentifier Name="c0"/>')
+    more = aliases("ConstantAlias", [product_of("c1"), product_of("c0")])
+    found = faults(small(variable("n", limit, expression("n == 0")), PLANT, more=more), "m.wmod")
+    assert [(rule, message) for _, _, _, rule, message in found] == [
+        ("cyclic-definition", "`c0` is computed from itself")
+    ]
+
+
+def test_aliases_of_events_have_each_event_once() -> None:
+    pair = '<EventList><SimpleIdentifier Name="{0}"/><SimpleIdentifier Name="{0}"/></EventList>'
+    more = aliases("EventAlias", [pair.format(name) for name in ["go", *(f"c{index}" for index in range(40))]])
+    text = component("A", "PLANT", node("a", initial=True) + node("b"), step("a", "b", "c40"))
+    assert count_of(text, more=more) == 2
+
+
+@pytest.mark.parametrize(
+    ("parts", "message"),
+    [
+        (
+            (
+                component(
+                    "A",
+                    "PLANT",
+                    node("a", initial=True),
+                    step("a", "a", "go", nested('<UnaryExpression Operator="!">', "", "</UnaryExpression>", 400)),
+                ),
+            ),
+            "synthesis does not take more than 50 expressions inside each other",
+        ),
+        (
+            (
+                variable(
+                    "n",
+                    nested('<UnaryExpression Operator="-">', NUMBER.format(1), "</UnaryExpression>", 400),
+                    expression("n == 0"),
+                ),
+                PLANT,
+            ),
+            "synthesis does not take more than 50 expressions inside each other",
+        ),
+        (
+            (
+                PLANT,
+                nested(
+                    '<ForeachComponent Name="i">'
+                    + RANGE.format(NUMBER.format(1), NUMBER.format(1))
+                    + "<ComponentList>",
+                    "",
+                    "</ComponentList></ForeachComponent>",
+                    400,
+                ),
+            ),
+            "synthesis does not take more than 50 loops inside each other",
+        ),
+        (
+            (
+                PLANT,
+                nested(
+                    '<ForeachComponent Name="i">'
+                    + RANGE.format(NUMBER.format(1), NUMBER.format(10000))
+                    + "<ComponentList>",
+                    "",
+                    "</ComponentList></ForeachComponent>",
+                    3,
+                ),
+            ),
+            "synthesis does not take a module whose expansion takes more than 2000000 steps",
+        ),
+    ],
+    ids=["value", "constant", "loops", "iterations"],
+)
+def test_a_module_has_limits(parts: tuple[str, ...], message: str) -> None:
+    [(_, line, _, rule, found)] = faults(small(*parts), "m.wmod")
+    assert (rule, found) == ("automata-construct", message)
+    assert line > 1
+
+
+def test_variables_may_start_with_one_of_many_values() -> None:
+    kind = RANGE.format(NUMBER.format(0), NUMBER.format(99_998))
+    variables = [variable(f"n{index}", kind, expression(f"n{index} == 7")) for index in range(100)]
+    assert faults(small(*variables, PLANT), "m.wmod") == []
+
+
+def test_an_encoding_has_one_table(tmp_path: Path) -> None:
+    text = module(_EVENTS, PLANT)
+    (tmp_path / "m.wmod").write_bytes(text.replace("UTF-8", "UTF-16").encode("utf-16"))
+    assert read(tmp_path / "m.wmod").findings == []
+    # In Punycode, the text would be another one.
+    (tmp_path / "m.wmod").write_text(text.replace("UTF-8", "punycode"), encoding="utf-8")
+    assert read(tmp_path / "m.wmod").findings == []
+
+
 # Single automata and their lists
 
 MACHINE = """<Generator>
@@ -338,3 +472,36 @@ def test_an_unobservable_event_draws_a_warning() -> None:
     reading = read("m.xmd", Documents({"m.xmd": text}))
     assert [finding.severity for finding in reading.findings] == [Severity.WARNING]
     assert reading.model is not None
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "fault"),
+    [
+        ("<Alphabet>", "<Alphabet>\n" * 60, (52, "syntax", "more than 50 sections are inside each other")),
+        ("<Alphabet>", "<!-- >" * 60 + "<Alphabet>", (3, "syntax", "the comment has no end `-->`")),
+        (
+            '"a" "b"#7',
+            "<Consecutive>\n" + "1 9999\n" * 20 + "</Consecutive>",
+            (18, "automata-construct", "synthesis does not take more than 100000 states"),
+        ),
+    ],
+)
+def test_a_generator_has_limits(before: str, after: str, fault: tuple[int, str, str]) -> None:
+    assert before in MACHINE
+    _, line, _, rule, message = faults({"m.gen": MACHINE.replace(before, after, 1)}, "m.gen")[0]
+    assert (line, rule, message) == fault
+
+
+@pytest.mark.parametrize("again", ["m.gen", "other/../m.gen"])
+def test_a_list_names_a_file_once(again: str) -> None:
+    files = {"m.gen": MACHINE, "all.automata": f"plant m.gen\nrequirement {again}\n"}
+    message = "the list names `m.gen` twice"
+    assert faults(files, "all.automata") == [("all.automata", 2, 1, "automata-declaration", message)]
+
+
+@pytest.mark.parametrize(("kind", "rule"), [("state", "unique-state"), ("event", "automata-declaration")])
+def test_an_id_is_unique(kind: str, rule: str) -> None:
+    text = (_MODELS / "mouse.xmd").read_text(encoding="utf-8").replace(f'<{kind} id="1"', f'<{kind} id="0"', 1)
+    found = [fault for fault in faults({"m.xmd": text}, "m.xmd") if fault[3] == rule]
+    assert [message for *_, message in found] == [f"there are two {kind}s with the id `0`"]
+    assert f'<{kind} id="0"' in text.splitlines()[found[0][1] - 1]
