@@ -103,7 +103,8 @@ def _verify_in_processes(model: str, chosen: str | None, paths: Paths, jobs: int
     """Return the verdicts on a model without errors. Each process reads and synthesizes it again."""
     parts: dict[str, list[Verdict]] = {}
     began = time_ns()
-    for (*_, name), verdicts in completed(_part, [(model, chosen, paths, began, name) for name in PARTS], jobs):
+    tasks = [(model, chosen, paths, began, name) for name in PARTS]
+    for (*_, name), verdicts in completed(_part, tasks, min(jobs, len(tasks))):
         if verdicts is None:
             raise CallError(f"the process that verified {name} was killed; use fewer --jobs if memory is short")
         parts[name] = verdicts
