@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
+
+from robosc.analysis.verify import PARTS
+from robosc.tools.workers import completed
 
 from .conftest import DOOR
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from .conftest import Run
 
 
@@ -37,3 +42,22 @@ def test_findings_and_an_empty_supervisor_are_those_of_one_process(run: Run, stu
         answers = [run("verify", file, "--jobs", jobs) for jobs in ("1", "2")]
         assert [answer.exit_code for answer in answers] == [status, status]
         assert answers[0].output == answers[1].output
+
+
+@pytest.mark.parametrize(
+    ("action", "most"), [("verify", len(PARTS)), ("test", 2)], ids=["one process a part", "one process a scenario"]
+)
+def test_no_process_is_without_work(
+    action: str, most: int, run: Run, door: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    numbers: list[int] = []
+
+    def in_this_process(work: Any, tasks: list[Any], jobs: int) -> Iterator[tuple[Any, Any]]:
+        numbers.append(jobs)
+        return completed(work, tasks, 1)
+
+    monkeypatch.setattr(f"robosc.tools.cli.{action}.completed", in_this_process)
+    Path("door.scenarios").write_text('scenario "a"\n  expect open sent\nscenario "b"\n  expect open sent\n')
+    files = [door, "door.scenarios"] if action == "test" else [door]
+    assert run(action, *files, "--jobs", "64").exit_code == 0
+    assert numbers == [most]
