@@ -6,6 +6,7 @@ hold texts and numbers, no models.
 
 from __future__ import annotations
 
+import ctypes
 import gc
 import os
 import signal
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
 Task = TypeVar("Task")
 Result = TypeVar("Result")
 
+#: Option of `prctl`: the signal at the end of the parent, from linux/prctl.h.
+_PR_SET_PDEATHSIG = 1
 #: Time limit for the first connection to a cluster, and for its first worker.
 _PATIENCE_SECONDS = 30
 
@@ -140,7 +143,7 @@ def _loky(_address: str) -> Iterator[Deaths]:
     from joblib.externals.loky import get_reusable_executor
 
     try:
-        with joblib.parallel_config("loky", initializer=_begin):
+        with joblib.parallel_config("loky", initializer=_begin, initargs=(os.getpid(),)):
             yield (BrokenExecutor,)
     finally:
         # Release folders and locks now. joblib does so at the end of the interpreter, which the command skips.
@@ -149,9 +152,16 @@ def _loky(_address: str) -> Iterator[Deaths]:
         gc.collect()
 
 
-def _begin() -> None:
-    """Prepare a process of this machine: only the command handles interrupts and shows progress."""
+def _begin(parent: int) -> None:
+    """Prepare a process of this machine: only the command handles interrupts and shows progress.
+
+    On Linux, the process gets SIGTERM when its parent ends, and removes its temporary folders.
+    """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGTERM, 0, 0, 0)
+        if os.getppid() != parent:  # The parent has ended before the call.
+            os._exit(1)
     sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: PTH123, SIM115
 
 

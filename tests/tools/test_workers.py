@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
+import sys
 import time
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
 from robosc.tools.cli import CallError
 from robosc.tools.workers import completed
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 def square(number: int) -> int:
@@ -72,6 +71,32 @@ def test_the_processes_are_gone_after_the_last_result_and_after_a_stop() -> None
 
     for pid in pids(20) | pids(3):
         assert not is_running(pid)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux signals the end of a parent")
+@pytest.mark.parametrize("ending", [signal.SIGTERM, signal.SIGHUP, signal.SIGKILL])
+def test_the_processes_end_with_their_parent(ending: signal.Signals, tmp_path: Path) -> None:
+    script = "import sys; from tests.tools.test_workers import *; list(completed(wait, [sys.argv[1]] * 2, 2))"
+    with subprocess.Popen([sys.executable, "-c", script, str(tmp_path)], cwd=Path(__file__).parents[2]) as parent:
+        while len(pids := [int(file.name) for file in tmp_path.iterdir()]) < 2:
+            assert parent.poll() is None
+            time.sleep(0.02)
+        parent.send_signal(ending)
+    try:
+        for _ in range(600):
+            if not any(map(is_running, pids)):
+                return
+            time.sleep(0.05)
+        raise AssertionError("a process runs without its parent")
+    finally:
+        for pid in filter(is_running, pids):
+            os.kill(pid, signal.SIGKILL)
+
+
+def wait(folder: str) -> None:
+    """Create a file with the number of the process as its name, and wait for its end."""
+    (Path(folder) / str(os.getpid())).touch()
+    time.sleep(300)
 
 
 def process(_: int) -> int:

@@ -23,7 +23,7 @@ from robosc.tools.cli.progress import progress
 from robosc.tools.cli.report import Report
 from robosc.tools.sweep.jobs import Job, absolute, inputs_of, perform
 from robosc.tools.sweep.results import Results, Row
-from robosc.tools.sweep.variants import SettingError, combinations, replaced, whole_numbers
+from robosc.tools.sweep.variants import SettingError, combinations, replaced, require_at_most, whole_numbers
 from robosc.tools.workers import completed, processors
 
 if TYPE_CHECKING:
@@ -118,6 +118,7 @@ def command(
             variants = combinations(settings)
             played = None if action == "test" and not seeds and not scenarios else scenarios
             models = _models(targets, action, needs_scenarios=played is None)
+            require_at_most(len(models) * len(variants) * len(numbers))
             planned = [
                 replace(job, settings=tuple(own.items()), seed=seed)
                 for job in _variants(action, models, variants, played, chosen, paths)
@@ -177,7 +178,7 @@ def _variants(
         try:
             changes = replaced(model, searched, variants) if variants != [{}] else [{}]
         except SettingError as error:
-            faults.append(str(error))
+            faults += str(error).splitlines()
             continue
         contents = inputs_of(model, searched)
         settings = chosen or (config.find(Path(model).parent) if action in {"verify", "test"} else None)
@@ -197,7 +198,7 @@ def _variants(
                 values=tuple(variant.items()),
             )
     if faults:
-        raise SettingError("\n".join(faults))
+        raise SettingError("\n".join(dict.fromkeys(faults)))
 
 
 def _do(planned: Mapping[str, Job], results: Results, jobs: int | None, cluster: str | None, *, resumable: bool) -> int:

@@ -202,7 +202,7 @@ def _play_in_processes(call: Call, number: int) -> list[Run]:
     """Return the runs of a number of scenarios in their order. Each process reads the model, and plays its share."""
     shares = [(call, first) for first in range(min(call.jobs, number))]
     runs: dict[int, Run] = {}
-    for _, played in completed(_play_share, shares, call.jobs):
+    for _, played in completed(_play_share, shares, max(len(shares), 1)):
         if played is None:
             raise CallError("a process that played scenarios was killed; use fewer --jobs if memory is short")
         runs |= played

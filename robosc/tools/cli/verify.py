@@ -106,7 +106,8 @@ def command(
 def _verify_in_processes(call: _Call, jobs: int) -> list[Verdict]:
     """Return the verdicts on a model without errors. Each process reads and synthesizes it again."""
     parts: dict[str, list[Verdict]] = {}
-    for (*_, name), verdicts in completed(_part, [(*call, name) for name in PARTS], jobs):
+    tasks = [(*call, name) for name in PARTS]
+    for (*_, name), verdicts in completed(_part, tasks, min(jobs, len(tasks))):
         if verdicts is None:
             raise CallError(f"the process that verified {name} was killed; use fewer --jobs if memory is short")
         parts[name] = verdicts

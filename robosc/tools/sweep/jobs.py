@@ -122,7 +122,9 @@ def perform(job: Job) -> dict[str, Any]:
             "version": __version__,
         }
         # Paths as the user knows them: relative below the working folder, else absolute.
-        text = json.dumps(answer).replace(f"{inside(job.folder)}{os.sep}", "").replace(str(root), "")
+        text = json.dumps(answer, ensure_ascii=False)
+        for path in (f"{inside(job.folder)}{os.sep}", str(root)):
+            text = text.replace(json.dumps(path, ensure_ascii=False)[1:-1], "")
     replaced: dict[str, Any] = json.loads(text)
     return replaced
 

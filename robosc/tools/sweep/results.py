@@ -22,6 +22,10 @@ if TYPE_CHECKING:
     from types import TracebackType
     from typing import Self
 
+#: Exceptions of lines that are no results.
+_FAULTS = (ArithmeticError, AttributeError, LookupError, RecursionError, TypeError, ValueError)
+#: Maximum exit status of a process.
+_MOST = 255
 #: Begin of each line.
 _BEGIN = b'{"id": "'
 
@@ -43,6 +47,7 @@ class Results:
 
     def __init__(self, path: str | None) -> None:
         self.by_job: dict[str, Row] = {}
+        self._path = path
         self._file = None if path is None else os.fdopen(open_log(path), "wb", buffering=0)
         if path is not None and self._file is not None and stat.S_ISREG(os.fstat(self._file.fileno()).st_mode):
             try:
@@ -72,19 +77,23 @@ class Results:
                 try:
                     result = json.loads(line)
                     self.by_job[result["id"]] = _row(result)
-                except (ValueError, TypeError, KeyError):
+                except _FAULTS:
                     message = "this line is no result of `robosc sweep`; choose another file for --output"
                     raise CallError(f"{path}:{number}: {message}") from None
                 complete += len(line)
         self._file.truncate(complete)
 
     def add(self, result: dict[str, Any]) -> None:
-        """Add the result of a job, and append its line to the file."""
+        """Add the result of a job, and append its line to the file. Raises OSError with the name of the file."""
         self.by_job[result["id"]] = _row(result)
         if self._file is not None:
             line = json.dumps(result).encode() + b"\n"
-            while line:
-                line = line[self._file.write(line) :]
+            try:
+                while line:
+                    line = line[self._file.write(line) :]
+            except OSError as error:
+                error.filename = self._path
+                raise
 
     def __enter__(self) -> Self:
         return self
@@ -97,7 +106,10 @@ class Results:
 
 
 def _row(line: Mapping[str, Any]) -> Row:
-    return Row(line["exit_status"], line["seconds"], _summary(line))
+    status, seconds = line["exit_status"], line["seconds"]
+    if type(status) is not int or not 0 <= status <= _MOST or not isinstance(seconds, int | float):
+        raise TypeError(f"{status} or {seconds} is no number of a result")
+    return Row(status, float(seconds), _summary(line))
 
 
 def _summary(line: Mapping[str, Any]) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from itertools import product
+from math import prod
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +17,8 @@ from robosc.language.checks.definitions import components, statements
 from robosc.language.cif.faults import span
 from robosc.language.cif.parsing import parse
 from robosc.language.cif.scopes import plain
+from robosc.language.grammar import Failure
+from robosc.language.grammar import parse as parse_rule
 from robosc.language.reading import read
 from robosc.language.syntax_messages import did_you_mean
 from robosc.language.text import Text
@@ -30,7 +33,9 @@ if TYPE_CHECKING:
 #: A value between commas: brackets and strings may contain commas.
 _VALUE = re.compile(r'(?:"(?:\\.|[^"\\])*"|\([^()]*\)|\[[^][]*\]|\{[^{}]*\}|[^,])+')
 _RANGE = re.compile(r"\s*(-?\d+)\.\.(-?\d+)\s*")
-#: Maximum number of whole numbers in a range.
+#: A number that is an expression of both languages.
+_NUMBER = re.compile(r"-?(?:0|[1-9][0-9]*)")
+#: Maximum number of whole numbers in a range, and of jobs.
 MOST = 1_000_000
 
 
@@ -65,37 +70,87 @@ def is_shipped(path: str) -> bool:
 def combinations(settings: Sequence[str]) -> list[dict[str, str]]:
     """Return all combinations of the values in settings `NAME=a,b,c` or `NAME=1..5`. Raises SettingError."""
     named: dict[str, list[str]] = {}
+    faults = []
     for setting in settings:
         name, _, values = setting.partition("=")
         is_range = _RANGE.fullmatch(values) is not None
-        parts = list(map(str, whole_numbers(values))) if is_range else _VALUE.findall(values)
+        try:
+            parts = list(map(str, whole_numbers(values))) if is_range else _VALUE.findall(values)
+        except SettingError as error:
+            faults.append(str(error))
+            continue
         is_complete = is_range or ",".join(parts) == values
         parts = [part.strip() for part in parts]
         if not name.strip() or not parts or not all(parts) or not is_complete:
-            raise SettingError(f"{setting}: write NAME=VALUE,VALUE, such as number=1,2,3 or number=1..3")
-        if name.strip() in named:
-            raise SettingError(f"{setting}: {name.strip()} is set twice; write all values after one =")
-        named[name.strip()] = list(dict.fromkeys(parts))
+            faults.append(f"{setting}: write NAME=VALUE,VALUE, such as number=1,2,3 or number=1..3")
+        elif name.strip() in named:
+            faults.append(f"{setting}: {name.strip()} is set twice; write all values after one =")
+        else:
+            named[name.strip()] = list(dict.fromkeys(parts))
+    if faults:
+        raise SettingError("\n".join(faults))
+    require_at_most(prod(map(len, named.values())))
     return [dict(zip(named, values, strict=True)) for values in product(*named.values())]
+
+
+def require_at_most(jobs: int) -> None:
+    """Raise SettingError if a sweep would have more jobs than `MOST`."""
+    if jobs > MOST:
+        raise SettingError(f"the sweep would have {jobs:,} jobs, and at most {MOST:,} are possible; use fewer values")
 
 
 def replaced(path: str, paths: Paths, variants: Sequence[Mapping[str, str]]) -> list[dict[str, str]]:
     """Return the changed texts of a model for each variant, by the paths of their files.
 
     A name is that of a constant or parameter of the model or of a file that it imports, or `Component.name` inside a
-    component or automaton. Raises SettingError if there is none or several, and OSError.
+    component or automaton. Raises SettingError for all names with none or several, and for all values that are no
+    expressions. Raises OSError.
     """
     declared: dict[str, list[_Declared]] = {}
     for name, place in _cif(path) if path.endswith(".cif") else _rscd(path, paths):
         declared.setdefault(name, []).append(place)
+    places: dict[str, _Declared] = {}
+    faults = []
+    is_expression = _is_cif_expression if path.endswith(".cif") else _is_rscd_expression
+    for name in dict.fromkeys(name for variant in variants for name in variant):
+        try:
+            places[name] = _only(path, name, declared)
+        except SettingError as error:
+            faults.append(str(error))
+        for value in dict.fromkeys(variant[name] for variant in variants if name in variant):
+            if not _NUMBER.fullmatch(value) and not is_expression(value):
+                kind = Path(path).suffix
+                faults.append(f"{name}: `{value}` is no expression of {kind} files; write NAME=1,2,3 or NAME=1..3")
+    if faults:
+        raise SettingError("\n".join(faults))
     changed = []
     for variant in variants:
         edits: dict[Text, list[Edit]] = {}
         for name, value in variant.items():
-            place = _only(path, name, declared)
+            place = places[name]
             edits.setdefault(place.text, []).append(Edit(place.span, value))
         changed.append({text.file: text.after(own) for text, own in edits.items()})
     return changed
+
+
+def _is_rscd_expression(value: str) -> bool:
+    """Return whether a value is one expression that does not change the text around it."""
+    try:
+        # In brackets, an open comment or a second statement is an error; without them, a closing bracket is one.
+        return not any(isinstance(parse_rule(text, "Expression"), Failure) for text in (value, f"({value})"))
+    except RecursionError:
+        return False
+
+
+def _is_cif_expression(value: str) -> bool:
+    """Return whether a value is one expression that does not change the text around it."""
+    for own in (value, f"({value})"):
+        specification, _ = parse(Text("", f"const int c = {own};"))
+        if specification is None or len(specification.declarations) != 1:
+            return False
+        if len(specification.declarations[0].constants) != 1:
+            return False
+    return True
 
 
 def _only(path: str, name: str, declared: Mapping[str, list[_Declared]]) -> _Declared:

@@ -213,6 +213,59 @@ def test_a_file_with_other_content_stays(run: Run, buffers: str) -> None:
         assert Path("results.jsonl").read_text() == content
 
 
+@pytest.mark.parametrize(
+    "line",
+    [
+        '{"id": "a", "exit_status": 0, "seconds": 1, "error": null, "findings": [], "result": null}',
+        '{"id": "a", "exit_status": "boom", "seconds": "z", "error": null, "findings": [], "result": {}}',
+        '{"id": "a", "exit_status": 256, "seconds": 1, "error": null, "findings": [], "result": {}}',
+        '{"id": "a", "exit_status": 0, "seconds": 1' + "0" * 400 + ', "error": null, "findings": [], "result": {}}',
+        "[" * 100_000,
+    ],
+    ids=["result", "types", "status", "seconds", "depth"],
+)
+def test_a_damaged_line_is_no_result(run: Run, buffers: str, line: str) -> None:
+    Path("results.jsonl").write_text(line + "\n")
+    answer = run("sweep", "check", buffers, "--output", "results.jsonl")
+    assert answer.exit_code == 2
+    assert "results.jsonl:1: this line is no result of `robosc sweep`" in answer.output
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="only Linux has a full device")
+def test_a_full_output_is_named(run: Run, buffers: str) -> None:
+    answer = run("sweep", "check", buffers, "--jobs", "1", "--output", "/dev/full")
+    assert answer.exit_code == 2
+    assert "/dev/full: No space left on device" in answer.output
+
+
+def test_paths_in_results_are_those_of_the_user(
+    run: Run, broken: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / 'Tür "1"'
+    (folder / "inside").mkdir(parents=True)
+    monkeypatch.chdir(folder)
+    text = broken.read_text()
+    for place in (folder / "inside" / "größe.rscd", tmp_path / "größe.rscd"):
+        place.write_text(text)
+    models = ["inside/größe.rscd", str(tmp_path / "größe.rscd")]
+    assert run("sweep", "check", *models, "--jobs", "1", "--output", "results.jsonl").exit_code == 1
+    assert [{finding["file"] for finding in line["findings"]} for line in lines()] == [{model} for model in models]
+
+
+def test_the_number_of_jobs_is_limited(run: Run, buffers: str) -> None:
+    limits = ["--set", "places=1..2000", "--seeds", "1..1000"]
+    answer = run("sweep", "test", buffers, *limits, "--jobs", "1")
+    assert answer.exit_code == 2
+    assert "the sweep would have 2,000,000 jobs, and at most 1,000,000 are possible" in answer.output
+
+
+def test_wrong_values_are_a_wrong_call(run: Run, buffers: str) -> None:
+    answer = run("sweep", "check", buffers, "--set", "places=1..3,(5", "--jobs", "1")
+    assert answer.exit_code == 2
+    assert "places: `1..3` is no expression of .cif files" in answer.output
+    assert "places: `(5` is no expression of .cif files" in answer.output
+
+
 def test_the_output_never_replaces_an_input(run: Run, buffers: str) -> None:
     assert run("sweep", "check", buffers, "--output", buffers).exit_code == 2
     assert Path(buffers).read_text() == BUFFERS

@@ -13,10 +13,13 @@ from robosc.analysis.verify import PARTS
 from robosc.synthesis import Strategy, Tuning
 from robosc.tools.cli import verify as command
 from robosc.tools.cli.options import Paths
+from robosc.tools.workers import completed
 
 from .conftest import DOOR
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from .conftest import Run
 
 
@@ -58,3 +61,22 @@ def test_each_process_synthesizes_with_the_tuning_of_the_call(monkeypatch: pytes
     verdicts = command._part((str(door), None, Paths(), tuning, 0, next(iter(PARTS))))
     assert tunings == [tuning]
     assert verdicts
+
+
+@pytest.mark.parametrize(
+    ("action", "most"), [("verify", len(PARTS)), ("test", 2)], ids=["one process a part", "one process a scenario"]
+)
+def test_no_process_is_without_work(
+    action: str, most: int, run: Run, door: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    numbers: list[int] = []
+
+    def in_this_process(work: Any, tasks: list[Any], jobs: int) -> Iterator[tuple[Any, Any]]:
+        numbers.append(jobs)
+        return completed(work, tasks, 1)
+
+    monkeypatch.setattr(f"robosc.tools.cli.{action}.completed", in_this_process)
+    Path("door.scenarios").write_text('scenario "a"\n  expect open sent\nscenario "b"\n  expect open sent\n')
+    files = [door, "door.scenarios"] if action == "test" else [door]
+    assert run(action, *files, "--jobs", "64").exit_code == 0
+    assert numbers == [most]

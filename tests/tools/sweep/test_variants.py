@@ -104,6 +104,44 @@ def test_a_name_in_two_files_is_ambiguous(robot: str, tmp_path: Path) -> None:
         replaced(robot, Paths(), [{"reach": "1"}])
 
 
+@pytest.mark.parametrize(
+    "value",
+    ["1..3", "(1", "2)", "1; plant P: location: initial; end", "1 // one", "1 /*", "1) + (2", "1; const int k = (2)"],
+)
+def test_a_value_is_one_expression(robot: str, tmp_path: Path, value: str) -> None:
+    file = tmp_path / "m.cif"
+    file.write_text(CIF)
+    for path, name, kind in ((robot, "reach", ".rscd"), (str(file), "n", ".cif")):
+        with pytest.raises(SettingError, match=re.escape(f"{name}: `{value}` is no expression of {kind} files")):
+            replaced(path, Paths(), [{name: "1"}, {name: value}])
+
+
+@pytest.mark.parametrize("value", ["(" * 5000 + "1" + ")" * 5000, "1 component Leg {}", "1 constant k: integer = 2"])
+def test_a_value_adds_no_text_to_a_robot(robot: str, value: str) -> None:
+    with pytest.raises(SettingError, match=r"is no expression of \.rscd files"):
+        replaced(robot, Paths(), [{"reach": value}])
+
+
+def test_all_wrong_names_and_values_are_in_one_message(robot: str) -> None:
+    with pytest.raises(SettingError) as caught:
+        replaced(robot, Paths(), [{"reach": "(1", "spede": "1"}, {"reach": "2)", "spede": "1"}])
+    assert [line.partition(";")[0] for line in str(caught.value).splitlines()] == [
+        "reach: `(1` is no expression of .rscd files",
+        "reach: `2)` is no expression of .rscd files",
+        f"{robot} has no constant or parameter `spede`",
+    ]
+
+
+def test_the_number_of_combinations_is_limited() -> None:
+    with pytest.raises(SettingError, match=r"would have 1,000,000,000,000 jobs, and at most 1,000,000 are possible"):
+        combinations(["a=1..1000000", "b=1..1000000"])
+
+
+def test_all_wrong_settings_are_in_one_message() -> None:
+    with pytest.raises(SettingError, match=r"(?s)n=: write NAME=.*\n5\.\.1: the last number.*\nm=2: m is set twice"):
+        combinations(["n=", "k=5..1", "m=1", "m=2"])
+
+
 NAMES = st.sampled_from(["a", "b", "C.d", "e"])
 VALUES = st.sampled_from(["1", "-2", "0.5", '"x, y"', "min(1, 2)", "{ x: 1, y: 2 }", "[1, 2]", "true"])
 
