@@ -106,7 +106,7 @@ def test_models_on_the_page(tmp_path: Path, heading: str, is_flawed: bool) -> No
     text = page(RULE)
     assert text is not None
     assert summary(text).endswith(".")
-    assert "\nSeverity: warning. `synthesize` and `transform` find it" in text
+    assert "\nSeverity: warning. `synthesize` and `transform` report it" in text
     [model] = re.findall(rf"^## {heading}\n\n```cif\n(.*?)^```$", text, flags=re.MULTILINE | re.DOTALL)
     (tmp_path / "belt.cif").write_text(model)
     assert bool(flaws(tmp_path / "belt.cif")) == is_flawed

@@ -19,11 +19,11 @@ if TYPE_CHECKING:
 
 _TOKEN = re.compile(
     r"""(?P<blank>\s+|%[^\n]*|<!--[\s\S]*?-->|<(?!!--)[?!][^>]*>)
-    |(?P<section><(?P<end>/?)(?P<name>[A-Za-z_][\w:]*)(?P<attributes>(?:[^<>"']|"[^"]*"|'[^']*')*?)(?P<alone>/?)>)
+    |(?P<section><(?P<end>/?)(?P<name>[A-Za-z_][\w:]*+)(?P<attributes>(?:[^<>"']|"[^"]*"|'[^']*')*?)(?P<alone>/?)>)
     |(?P<word>(?:"[^"\n]*"|'[^'\n]*')(?:\#[0-9]+)?|[^\s<>"'%]+)""",
     re.VERBOSE,
 )
-_ATTRIBUTE = re.compile(r"""([A-Za-z_]\w*)\s*=\s*(?:"([^"]*)"|'([^']*)')""")
+_ATTRIBUTE = re.compile(r"""(?<!\w)([A-Za-z_]\w*+)\s*+=\s*(?:"([^"]*)"|'([^']*)')""")
 _FLAGS = re.compile(r"\+[A-Za-z_]*\+")
 _STATE = re.compile(r"""(?P<name>"[^"]*"|'[^']*'|[^#]*)(?:\#(?P<number>[0-9]+))?""")
 #: Sections whose contents or attributes have a meaning here.

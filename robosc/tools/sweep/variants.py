@@ -30,8 +30,6 @@ if TYPE_CHECKING:
     from robosc.base.diagnostics import Span
     from robosc.tools.cli.options import Paths
 
-#: A value between commas: brackets and strings may contain commas.
-_VALUE = re.compile(r'(?:"(?:\\.|[^"\\])*"|\([^()]*\)|\[[^][]*\]|\{[^{}]*\}|[^,])+')
 _RANGE = re.compile(r"\s*(-?\d+)\.\.(-?\d+)\s*")
 #: A number that is an expression of both languages.
 _NUMBER = re.compile(r"-?(?:0|[1-9][0-9]*)")
@@ -62,6 +60,25 @@ def whole_numbers(text: str) -> list[int]:
     return list(range(low, high + 1))
 
 
+def _values(text: str) -> list[str]:
+    """Return the values between the commas of a text. Brackets and strings may contain commas."""
+    values = [""]
+    depth, is_string, is_escaped = 0, False, False
+    for character in text:
+        if character == "," and depth <= 0 and not is_string:
+            values.append("")
+            continue
+        values[-1] += character
+        if is_string:
+            is_string = is_escaped or character != '"'
+            is_escaped = not is_escaped and character == "\\"
+        elif character == '"':
+            is_string = True
+        else:
+            depth += (character in "([{") - (character in ")]}")
+    return values
+
+
 def is_shipped(path: str) -> bool:
     """Return whether a file belongs to the libraries of the tool, which every worker has."""
     return Path(path).resolve().is_relative_to(locate("stdlib").resolve())
@@ -75,13 +92,12 @@ def combinations(settings: Sequence[str]) -> list[dict[str, str]]:
         name, _, values = setting.partition("=")
         is_range = _RANGE.fullmatch(values) is not None
         try:
-            parts = list(map(str, whole_numbers(values))) if is_range else _VALUE.findall(values)
+            parts = list(map(str, whole_numbers(values))) if is_range else _values(values)
         except SettingError as error:
             faults.append(str(error))
             continue
-        is_complete = is_range or ",".join(parts) == values
         parts = [part.strip() for part in parts]
-        if not name.strip() or not parts or not all(parts) or not is_complete:
+        if not name.strip() or not parts or not all(parts):
             faults.append(f"{setting}: write NAME=VALUE,VALUE, such as number=1,2,3 or number=1..3")
         elif name.strip() in named:
             faults.append(f"{setting}: {name.strip()} is set twice; write all values after one =")

@@ -119,7 +119,7 @@ def test_each_construct_is_written_so_that_it_does_what_the_model_does(name: str
 @pytest.mark.slow
 def test_so_are_random_specifications(tmp_path: Path) -> None:
     examined = 0
-    for seed in range(60):
+    for seed in range(80):
         if supervised(seed) is not None:
             for name, text in Specification(seed).files.items():
                 (tmp_path / name).write_text(text)
