@@ -25,7 +25,7 @@ page. Both tools take a model one after the other on the same machine. Compare t
 
 The first {escet} models are those that the scripts of [Eclipse ESCET](https://eclipse.dev/escet) time for synthesis.
 ESCET's folder also holds `wafer_scanner_n2`, `bcs_shared_behavior` and `bcs_shared_features`, which no script times.
-RoboSC does not complete the first: N2TEXT. The other two are parts that `bcs_dynamic` and
+RoboSC does not complete the first within a minute of processor time. The other two are parts that `bcs_dynamic` and
 `bcs_static` import.
 
 The `cat_mouse_tower_*` models lie in the same folder. The `cluster_tools_*` models are chains of

@@ -8,6 +8,7 @@ are nested instead (`factored`).
 
 from __future__ import annotations
 
+from itertools import pairwise
 from math import inf
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -46,6 +47,8 @@ def separating_expression(
     is shorter. A long one is nested, since a cover would take much longer. Raises MemoryError if it is too long to be
     written at all.
     """
+    if _are_interleaved(domains):
+        return _covering(encoding, inside, outside, domains, longest)
     factoring = Factoring(encoding, domains, inf if longest is None else _SEARCHED * longest)
     try:
         factored, excluded = factoring.separating(inside, outside), factoring.separating(outside, inside)
@@ -59,9 +62,28 @@ def separating_expression(
     if shorter.length > _READABLE:
         expression = expression_of(shorter)
         return expression if shorter is factored else ex.Negation(operand=expression)
-    positive, negative = _shorter_covers(
-        _Cover(encoding, inside, outside, domains), _Cover(encoding, outside, inside, domains)
+    return _covering(encoding, inside, outside, domains)
+
+
+def _are_interleaved(domains: Sequence[Domain]) -> bool:
+    """Return whether the bits of some domains alternate, as those of wide integers do. They cannot be factored."""
+    ranges = sorted((domain.levels[0], domain.levels[-1]) for domain in domains if domain.levels)
+    return any(last > first for (_, last), (first, _) in pairwise(ranges))
+
+
+def _covering(
+    encoding: Encoding, inside: Diagram, outside: Diagram, domains: Sequence[Domain], most: int | None = None
+) -> ex.Expression | None:
+    """Return the shorter of a cover of `inside` and a negated cover of `outside`.
+
+    Returns None if both have more than `most` products.
+    """
+    covers = _shorter_covers(
+        _Cover(encoding, inside, outside, domains), _Cover(encoding, outside, inside, domains), most
     )
+    if covers is None:
+        return None
+    positive, negative = covers
     if positive is not None and (negative is None or _length(positive) <= _length(negative)):
         result = disjunction(_product(product) for product in positive)
     else:
@@ -190,12 +212,19 @@ def _readable(domain: Domain, needed: Ranges, free: Ranges) -> Ranges:
     )
 
 
-def _shorter_covers(positive: _Cover, negative: _Cover) -> tuple[list[Product] | None, list[Product] | None]:
-    """Compute both covers in turns; None for a cover with more products than the other."""
+def _shorter_covers(
+    positive: _Cover, negative: _Cover, most: int | None
+) -> tuple[list[Product] | None, list[Product] | None] | None:
+    """Compute both covers in turns; None for a cover with more products than the other.
+
+    Returns None if both have more than `most` products.
+    """
     covers: tuple[list[Product], list[Product]] = ([], [])
     sources = positive.products(), negative.products()
     done = [False, False]
     while not any(done):
+        if most is not None and len(covers[1]) > most:
+            return None
         for index, source in enumerate(sources):
             product = next(source, None)
             if product is None:
