@@ -24,7 +24,7 @@ from robosc.base.diagnostics import Diagnostic, ModelError, Severity
 from robosc.model import sct
 from robosc.model.places import place
 from robosc.model.semantics.roles import event_name, is_from_cif
-from robosc.synthesis.bdd import Diagrams, nodes_in, with_enough_memory
+from robosc.synthesis.bdd import Diagrams, OutOfRoomError, nodes_in, with_enough_memory
 from robosc.synthesis.cover import separating_expression
 from robosc.synthesis.encoding import BitLayout, Encoding, Order
 from robosc.synthesis.fixpoint import Search, SupervisedStates, reachable
@@ -263,16 +263,20 @@ def _with_states(
         layout = BitLayout(model, tuning.order)
     race = Race(tuning.strategy)
 
-    def solve_within(capacity: int) -> _Solution:
-        return _solve(layout, capacity, min(capacity, nodes_in(memory) // _RIVAL), statistics, race)
+    rival_most = nodes_in(memory) // _RIVAL
 
     def run(capacity: int) -> T:
+        is_open = race.strategy is None
         try:
-            solution = solve_within(capacity)
+            return use(_solve(layout, capacity, min(capacity, rival_most), statistics, race))
         except StrategyChosenError:
-            solution = None
-        # After the handler, the diagrams of the other strategies are released.
-        return use(solution or solve_within(capacity))
+            pass
+        except OutOfRoomError:
+            # The winner had only the room of a rival.
+            if not is_open or race.strategy is not Strategy.BACKWARD or capacity <= rival_most:
+                raise
+        # After the handlers, the diagrams of the other strategies are released.
+        return use(_solve(layout, capacity, min(capacity, rival_most), statistics, race))
 
     return with_enough_memory(run, memory, layout.levels)
 

@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from benchmarks.dcs_families import air_traffic, cluster_tools, dining_philosophers
+from robosc import synthesis
 from robosc.language.cif import read
 from robosc.synthesis import Statistics, Strategy, Tuning, bdd, count, cover, race, synthesize
 from tests.random_sct import sct_models
@@ -88,3 +89,22 @@ def test_an_order_of_names_precedes_the_automatic_one(tmp_path):
     assert counted(dining_philosophers(3, 1), tmp_path, order=["Goal"])[0] == states
     with pytest.raises(ValueError, match="no element `Table`"):
         counted(dining_philosophers(3, 1), tmp_path, order=["Table"])
+
+
+def test_a_winner_without_room_begins_again_with_all_room(tmp_path, monkeypatch):
+    states, *_ = counted(cluster_tools(8), tmp_path)
+    monkeypatch.setattr(race, "_HEAD_START", 1 << 10)
+    good = race.good_states
+    rooms = []
+
+    def good_states(search, safe):
+        result = yield from good(search, safe)
+        rooms.append(search.diagrams._capacity)
+        if rooms == [1 << 16]:
+            search.diagrams._full = 0
+        return result
+
+    monkeypatch.setattr(race, "good_states", good_states)
+    monkeypatch.setattr(synthesis, "nodes_in", lambda _: synthesis._RIVAL << 16)
+    assert counted(cluster_tools(8), tmp_path)[:2] == (states, "backward")
+    assert rooms[0] == 1 << 16 < rooms[1]
