@@ -11,6 +11,7 @@ from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any, Literal, Protocol, TypedDict, cast
 
 from robosc.base.extensions import Extension, extensions
+from robosc.language.configuration.names import configured_names
 
 if TYPE_CHECKING:
     from contextlib import AbstractContextManager
@@ -133,7 +134,8 @@ class Target:
             options["tests"] = tests
         if into is not None:
             options["into"] = into
-        return cast("OptionalGenerator", self.generator()).generate(models, configuration, **options)
+        with configured_names(models.rosgraph, configuration):
+            return cast("OptionalGenerator", self.generator()).generate(models, configuration, **options)
 
     def generator(self) -> Generator:
         """Return the generator: a module of its name, or a target of `robosc.m2t.ros`. It is loaded on first use."""

@@ -53,7 +53,8 @@ _MODULES = {
     "launch.launch_description_sources": ["AnyLaunchDescriptionSource"],
     "launch.substitutions": ["LaunchConfiguration", "PathJoinSubstitution"],
     "launch_ros": [],
-    "launch_ros.actions": ["Node", "SetRemap"],
+    "launch_ros.actions": ["LoadComposableNodes", "Node", "SetRemap"],
+    "launch_ros.descriptions": ["ComposableNode"],
     "launch_ros.parameter_descriptions": ["ParameterValue"],
     "launch_ros.substitutions": ["FindPackageShare"],
 }

@@ -38,6 +38,8 @@ NO_STOP_ON_VIOLATION = (
 REPORTS_VIOLATIONS = (
     "onViolation is report: after the first violation of an assumption, nothing about the robot is proved"
 )
+#: Warning of a node at its start: its namespace, and the names of the model outside of it.
+ABSOLUTE_NAMES = 'the namespace %s does not apply to %s: see "absoluteNames" in the configuration'
 #: Maximum depth of folders below the model in the search for a configuration.
 SEARCH_DEPTH = 3
 
@@ -199,6 +201,11 @@ class Configuration(_Settings):
     retry_ms: Milliseconds = Field(
         default=1000, description="Time from the failure of a service or action to its reset, in milliseconds."
     )
+    absolute_names: bool = Field(
+        default=True,
+        description="Whether names of topics, services and actions keep their leading /. Without it, the namespace of"
+        " the node applies to them. If absent, a node in a namespace warns of such names.",
+    )
     frame_id: ByTopic[str] = Field(default={}, description="Frame of headers that the model leaves unset, by topic.")
     qos: ByTopic[QualityOfService] = Field(
         default={}, description="ROS 2 quality of service, by topic, service or action."
@@ -271,6 +278,11 @@ class Configuration(_Settings):
     def says_how_to_stop(self) -> bool:
         """Whether the user has decided on the messages at the node's end, possibly none."""
         return "on_shutdown" in self.model_fields_set
+
+    @property
+    def warns_of_absolute_names(self) -> bool:
+        """Whether a node in a namespace warns of absolute names: the user has not decided on them."""
+        return "absolute_names" not in self.model_fields_set
 
     def stops_on_violation(self, model: "SupervisoryControlModel") -> bool:
         """Return whether the first violation of an assumption of the model stops the robot."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Literal, Protocol
 
 from robosc.base.files.resources import locate
-from robosc.language.configuration import NO_STOP, NO_STOP_ON_SILENCE, NO_STOP_ON_VIOLATION, REPORTS_VIOLATIONS
+from robosc.language.configuration import ABSOLUTE_NAMES, NO_STOP, NO_STOP_ON_SILENCE, NO_STOP_ON_VIOLATION, REPORTS_VIOLATIONS
 from robosc.language.configuration.parameters import controller_parameters, layer_parameters
 from robosc.m2t.c import engine
 from robosc.m2t.ros import preconditions, typed_state
@@ -40,6 +40,7 @@ _INCLUDED = re.compile(r'^#include "(robosc[^"]*)"$', re.MULTILINE)
 
 #: Headers in `include`, each with the features of a node that need it (empty: always). `{ros}` is the ROS version.
 _HEADERS = {
+    "robosc/absolute_names": {"absolute"},
     "robosc/block_reasons": {"gates"},
     "robosc/component_status": {"statuses"},
     "robosc/data": set(),
@@ -245,6 +246,7 @@ class RosTarget:
             awaited=_awaited(node, configuration) if kind == "controller" else [],
             turned=_turned(node) if ros.version == 1 else [],
             has_defaults=has_defaults,
+            absolute_warning=ABSOLUTE_NAMES,
             frame=lambda topic: configuration.frame_id.get(topic.removeprefix("/"), ""),
         )
         if layer and self.layer:
@@ -282,6 +284,7 @@ class RosTarget:
         present = {
             self.kind: True,
             f"ros{self.ros.version}": True,
+            "absolute": configuration.warns_of_absolute_names and any(node.absolute),
             "actions": node.actions,
             "assumptions": node.assumed,
             "awaits": _awaited(node, configuration),

@@ -60,6 +60,7 @@ class NodeValues:
     stops_on_violation: bool
     awaited: Sequence[str]
     turned: Sequence[tuple[Variable, str]]
+    absolute_warning: str
     has_defaults: Callable[[rosgraph.Interface], bool]
     frame: Callable[[str], str]
 

@@ -63,7 +63,7 @@ def test_parameters_of_the_model_have_a_file(logs: bool) -> None:
     own = {"speed": 0.2, "reach": 0.5, "least": 3, "greeting": "hello", "doubled": False}
     in_components = {"Base": {"factor": -1.0}, "Lamp": {"pause": 60.0}}
     read = YAML(typ="safe").load
-    assert read(files["config/cruise_layer.yaml"]) == {"/**": {"ros__parameters": kept | own | in_components}}
+    assert read(files["config/cruise_layer.yaml"]) == {"/**/cruise_layer": {"ros__parameters": kept | own | in_components}}
     node, *_ = launched(files["launch/cruise_layer.launch.py"]).of("Node")
     file, *others = node.named["parameters"]
     assert file.positional == ("params_file",)

@@ -32,6 +32,8 @@ _PROFILES = {
     Profile.SERVICES: "rclcpp::ServicesQoS()",
 }
 _BUILD_TOOL = "ament_cmake"
+#: Package of the launch file's YAML reader. A user's own package has it through `launch_ros`.
+_YAML = "python3-yaml"
 _DURABILITY = {None: "", "volatile": ".durability_volatile()", "transient_local": ".transient_local()"}
 
 
@@ -94,7 +96,7 @@ class Ros2:
     ) -> ControllerValues:
         """Return the template values of a controller; see `Middleware`."""
         types = set(used.types)
-        libraries, started = ["rclcpp"], ["launch", "launch_ros"]
+        libraries, started = ["rclcpp"], ["launch", "launch_ros", _YAML]
         if node.actions:
             libraries.append("rclcpp_action")
             types.add("action_msgs")
@@ -127,6 +129,8 @@ class Ros2:
         hands_on = (layer.instead or layer.node.limited) and layer.node.hands_on
         libraries = ["rclcpp", *(["rosidl_typesupport_introspection_cpp"] if hands_on else [])]
         started = {"launch", "launch_ros", *controller_package(configuration)}
+        if layer.node.parameters:
+            started.add(_YAML)
         return LayerValues(
             headers=self._headers(layer.node, used.reports),
             build_tool=_BUILD_TOOL,
