@@ -109,7 +109,8 @@ class Target:
         names = [topic.topic for topics in (graph.subscriptions, graph.publishers) for topic in topics]
         names += [service.identifier for service in graph.serviceClients]
         names += [action.identifier for action in graph.actionClients]
-        return [*findings, *configuration.unknown_names([name.removeprefix("/") for name in names])]
+        unknown = configuration.unknown_names([name.removeprefix("/") for name in names])
+        return [*findings, *unknown, *configuration.missing_license()]
 
     @property
     def tested_ros(self) -> int | None:

@@ -40,6 +40,8 @@ REPORTS_VIOLATIONS = (
 )
 #: Warning of a node at its start: its namespace, and the names of the model outside of it.
 ABSOLUTE_NAMES = 'the namespace %s does not apply to %s: see "absoluteNames" in the configuration'
+#: Licenses whose text a package gets.
+LICENSE_TEXTS = ("Apache-2.0", "BSD-3-Clause", "MIT")
 #: Maximum depth of folders below the model in the search for a configuration.
 SEARCH_DEPTH = 3
 
@@ -172,7 +174,12 @@ class Package(_Settings):
         default="unknown@example.com",
         pattern=r"^[-a-zA-Z0-9_%+]+(\.[-a-zA-Z0-9_%+]+)*@([-a-zA-Z0-9%]+\.)+[a-zA-Z]{2,}$",
     )
-    license: str = Field(default="Proprietary", min_length=1)
+    license: str = Field(
+        default="Proprietary",
+        min_length=1,
+        description=f"SPDX identifier. The package gets the text of {', '.join(LICENSE_TEXTS)}.",
+    )
+    url: str | None = Field(default=None, pattern=r"^https?://\S+$", description="Website of the package.")
     description: str | None = Field(
         default=None, min_length=1, description="Default: a sentence with the robot's name."
     )
@@ -287,6 +294,15 @@ class Configuration(_Settings):
     def stops_on_violation(self, model: "SupervisoryControlModel") -> bool:
         """Return whether the first violation of an assumption of the model stops the robot."""
         return self.on_violation == "stop" and bool(assumptions(model))
+
+    def missing_license(self) -> list[Diagnostic]:
+        """Return a warning about a license whose text the package does not get."""
+        package = self.package
+        if package.license in {*LICENSE_TEXTS, Package().license}:
+            return []
+        message = f'"package.license": the package gets no LICENSE file for {package.license}'
+        hint = f"add the file yourself, or name one of {', '.join(LICENSE_TEXTS)}"
+        return [self.warning(("package", "license"), message, hint)]
 
     @property
     def watchdog_meaning(self) -> str:

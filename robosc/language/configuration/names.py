@@ -33,5 +33,9 @@ def configured_names(graph: rosgraph.RosGraph | None, configuration: Configurati
 def absolute_names(graph: rosgraph.RosGraph) -> tuple[Sequence[str], Sequence[str], Sequence[str]]:
     """Return the absolute names of topics, services and actions, each once."""
     topics = [topic.topic for topic in [*graph.subscriptions, *graph.publishers]]
-    services, actions = ([client.identifier for client in known] for known in (graph.serviceClients, graph.actionClients))
-    return tuple([*dict.fromkeys(name for name in names if name.startswith("/"))] for names in (topics, services, actions))
+    services, actions = (
+        [client.identifier for client in known] for known in (graph.serviceClients, graph.actionClients)
+    )
+    return tuple(
+        [*dict.fromkeys(name for name in names if name.startswith("/"))] for names in (topics, services, actions)
+    )

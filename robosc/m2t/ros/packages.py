@@ -7,7 +7,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Literal, Protocol
 
 from robosc.base.files.resources import locate
-from robosc.language.configuration import ABSOLUTE_NAMES, NO_STOP, NO_STOP_ON_SILENCE, NO_STOP_ON_VIOLATION, REPORTS_VIOLATIONS
+from robosc.language.configuration import (
+    ABSOLUTE_NAMES,
+    LICENSE_TEXTS,
+    NO_STOP,
+    NO_STOP_ON_SILENCE,
+    NO_STOP_ON_VIOLATION,
+    REPORTS_VIOLATIONS,
+)
 from robosc.language.configuration.parameters import controller_parameters, layer_parameters
 from robosc.m2t.c import engine
 from robosc.m2t.ros import preconditions, typed_state
@@ -33,7 +40,7 @@ if TYPE_CHECKING:
     from robosc.model.engine import EngineModel
 
 #: Files of a stand-alone package: path to template.
-_PACKAGE = {"package.xml": "package.xml.j2", "CMakeLists.txt": "CMakeLists.txt.j2"}
+_PACKAGE = {name: f"{name}.j2" for name in ("package.xml", "CMakeLists.txt", "README.md", "CHANGELOG.rst")}
 #: Types of geometry_msgs that contain only numbers: no header, no quaternion.
 _PLAIN = frozenset(["Accel", "Inertia", "Point", "Point32", "Polygon", "Twist", "Vector3", "Wrench"])
 _INCLUDED = re.compile(r'^#include "(robosc[^"]*)"$', re.MULTILINE)
@@ -96,6 +103,9 @@ class Middleware(Protocol):
     #: Files that `--with-tests` adds to a controller: path to template.
     test_files: ClassVar[Mapping[str, str]]
 
+    def spelled(self, interface: rosgraph.Interface) -> str:
+        """Return the name of a type as the tools of this ROS version print it."""
+
     def controller(
         self, node: GeneratedNode, configuration: Configuration, used: UsedPackages, *, tests: bool
     ) -> BuildValues:
@@ -154,6 +164,7 @@ class RosTarget:
             "robot": graph.name,
             "package": package,
             "about": configuration.package,
+            "has_license": bool(_license(configuration)),
             "message": typed_state.MESSAGE,
             "fields": typed_state.fields(graph, CppNames(graph)),
         }
@@ -162,6 +173,7 @@ class RosTarget:
             "package.xml": "interfaces_package.xml.j2",
             "CMakeLists.txt": "interfaces_CMakeLists.txt.j2",
             f"msg/{typed_state.MESSAGE}.msg": "State.msg.j2",
+            **_license(configuration),
         }
         return {f"{package}/{path}": templates.get_template(name).render(values) for path, name in files.items()}
 
@@ -186,7 +198,7 @@ class RosTarget:
         # Users rarely set a layer's parameters, except for the model's own.
         has_file = kind == "controller" or bool(node.parameters)
         files = {
-            **({"fragment.cmake": "fragment.cmake.j2"} if into else _PACKAGE),
+            **({"fragment.cmake": "fragment.cmake.j2"} if into else _PACKAGE | _license(configuration)),
             f"launch/{name}{ros.launch_file}": f"{kind}_launch.j2",
             source: f"{kind}_node.cpp.j2",
             **({f"config/{name}.yaml": "parameters.yaml.j2"} if has_file else {}),
@@ -220,6 +232,9 @@ class RosTarget:
             has_own_types=into in types,
             player=_player(name, into),
             about=configuration.package,
+            has_license=bool(_license(configuration)),
+            described_reports=_described(reports_blocked, reported_statuses, kind_of_state, configuration),
+            spelled=ros.spelled,
             description=configuration.package.description or text,
             included=sorted([*own, *(f"{header}.hpp" for header in included)]),
             settings=configuration,
@@ -306,6 +321,27 @@ class RosTarget:
         }
         features = {feature for feature, is_there in present.items() if is_there}
         return [name.format(ros=self.ros.version) for name, needed in _HEADERS.items() if needed <= features]
+
+
+def _license(configuration: Configuration) -> dict[str, str]:
+    """Return the path and the template of the license's text, if RoboSC has it."""
+    name = configuration.package.license
+    return {"LICENSE": f"licenses/{name}.j2"} if name in LICENSE_TEXTS else {}
+
+
+def _described(
+    reports_blocked: bool, statuses: Sequence[Status], typed: rosgraph.Interface, configuration: Configuration
+) -> list[tuple[str, rosgraph.Interface, str]]:
+    """Return the topics of a node's reports about itself: name, type and content."""
+    shown = configuration.publish_state_information
+    described = [
+        ("~/state", _TEXT, "the state of each component, as JSON", shown),
+        ("~/definition", _TEXT, "the model: components, states, transitions, requirements; as JSON", shown),
+        ("~/typed_state", typed, "the state of each component", shown and configuration.typed_state),
+        ("~/blocked", _TEXT, "each blocked command with the reason, as JSON", reports_blocked),
+        ("/diagnostics", _STATUSES, "a status for each component", bool(statuses)),
+    ]
+    return [(name, kind, content) for name, kind, content, published in described if published]
 
 
 def _turned(node: GeneratedNode) -> list[tuple[Variable, str]]:

@@ -33,6 +33,7 @@ def node_environment(middleware: str) -> Environment:
         shift=shift,
         xml=xml_text,
         attribute=xml_attribute,
+        cell=table_cell,
     )
     templates.globals["queue_depth"] = QUEUE_DEPTH
     return templates
@@ -109,6 +110,11 @@ def xml_text(text: str) -> str:
 def xml_attribute(text: str) -> str:
     """Return the text as a quoted attribute value."""
     return quoteattr(_printable(text))
+
+
+def table_cell(text: str) -> str:
+    """Return the text for a cell of a Markdown table: one line without `|`."""
+    return " ".join(_printable(text).replace("|", "\\|").split())
 
 
 def _printable(text: str) -> str:

@@ -40,6 +40,9 @@ class NodeValues:
     has_own_types: bool
     player: str
     about: Package
+    has_license: bool
+    described_reports: Sequence[tuple[str, rosgraph.Interface, str]]
+    spelled: Callable[[rosgraph.Interface], str]
     description: str
     included: Sequence[str]
     settings: Configuration

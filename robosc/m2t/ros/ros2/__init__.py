@@ -32,8 +32,6 @@ _PROFILES = {
     Profile.SERVICES: "rclcpp::ServicesQoS()",
 }
 _BUILD_TOOL = "ament_cmake"
-#: Package of the launch file's YAML reader. A user's own package has it through `launch_ros`.
-_YAML = "python3-yaml"
 _DURABILITY = {None: "", "volatile": ".durability_volatile()", "transient_local": ".transient_local()"}
 
 
@@ -91,12 +89,16 @@ class Ros2:
         name = re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", words).lower()
         return f"{interface.package}/{_FOLDERS[interface.kind.name]}/{name}.hpp"
 
+    def spelled(self, interface: rosgraph.Interface) -> str:
+        """Return the name of a type, such as `sensor_msgs/msg/LaserScan`."""
+        return f"{interface.package}/{_FOLDERS[interface.kind.name]}/{interface.type}"
+
     def controller(
         self, node: GeneratedNode, configuration: Configuration, used: UsedPackages, *, tests: bool
     ) -> ControllerValues:
         """Return the template values of a controller; see `Middleware`."""
         types = set(used.types)
-        libraries, started = ["rclcpp"], ["launch", "launch_ros", _YAML]
+        libraries, started = ["rclcpp"], ["launch", "launch_ros"]
         if node.actions:
             libraries.append("rclcpp_action")
             types.add("action_msgs")
@@ -129,8 +131,6 @@ class Ros2:
         hands_on = (layer.instead or layer.node.limited) and layer.node.hands_on
         libraries = ["rclcpp", *(["rosidl_typesupport_introspection_cpp"] if hands_on else [])]
         started = {"launch", "launch_ros", *controller_package(configuration)}
-        if layer.node.parameters:
-            started.add(_YAML)
         return LayerValues(
             headers=self._headers(layer.node, used.reports),
             build_tool=_BUILD_TOOL,
