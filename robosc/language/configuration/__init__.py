@@ -249,6 +249,10 @@ class Configuration(_Settings):
         " actions and send onShutdown, a layer onBlocked, until the node is started again. report: go on.",
     )
     lifecycle: bool = Field(default=False, description="Whether the ROS 2 node is a managed (lifecycle) node.")
+    parameters: Literal["node", "library"] = Field(
+        default="node",
+        description="What declares the parameters of a ROS 2 node: the node itself, or generate_parameter_library.",
+    )
     package: Package = Package()
 
     _file: str = PrivateAttr(FILE_NAME)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar, Literal, Protocol
+from functools import reduce
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol
 
 from robosc.base.files.resources import locate
 from robosc.language.configuration import (
@@ -17,6 +18,7 @@ from robosc.language.configuration import (
 )
 from robosc.language.configuration.parameters import controller_parameters, layer_parameters
 from robosc.m2t.c import engine
+from robosc.m2t.c.names import KEYWORDS
 from robosc.m2t.ros import preconditions, typed_state
 from robosc.m2t.ros.gates import gates
 from robosc.m2t.ros.layer import LayerNode
@@ -197,11 +199,14 @@ class RosTarget:
         source, definition = f"src/{name}_node.cpp", f"include/{name}/definition.hpp"
         # Users rarely set a layer's parameters, except for the model's own.
         has_file = kind == "controller" or bool(node.parameters)
+        declared = (layer_parameters if layer else controller_parameters)(graph, configuration, "")
+        library = _library(declared, configuration) if ros.version == 2 else {}
         files = {
             **({"fragment.cmake": "fragment.cmake.j2"} if into else _PACKAGE | _license(configuration)),
             f"launch/{name}{ros.launch_file}": f"{kind}_launch.j2",
             source: f"{kind}_node.cpp.j2",
             **({f"config/{name}.yaml": "parameters.yaml.j2"} if has_file else {}),
+            **({f"src/{name}_parameters.yaml": "library.yaml.j2"} if library else {}),
             **({definition: "definition.hpp.j2"} if configuration.publish_state_information else {}),
             **(_test_files(ros, name, into) if tests else {}),
         }
@@ -220,7 +225,6 @@ class RosTarget:
         types = {interface.package for interface in [*node.interfaces, *reports]}
         used = UsedPackages({package for package in types if package != into}, reports)
         own = [definition.removeprefix("include/")] if configuration.publish_state_information else []
-        declared = (layer_parameters if layer else controller_parameters)(graph, configuration, "")
         text = f"The {'supervisory controller' if kind == 'controller' else 'supervisory layer'} of {graph.name}."
         values = NodeValues(
             kind=kind,
@@ -240,6 +244,7 @@ class RosTarget:
             settings=configuration,
             parameters={parameter.name: parameter for parameter in declared},
             has_parameters_file=has_file,
+            library=library,
             # The launch file of a layer has an argument for its log.
             parameter_groups=_groups(
                 parameter
@@ -380,6 +385,21 @@ def _groups(declared: Iterable[Parameter]) -> dict[str, dict[str, Parameter]]:
         group, _, name = parameter.name.rpartition(".")
         groups.setdefault(group, {})[name] = parameter
     return groups
+
+
+def _library(declared: Iterable[Parameter], configuration: Configuration) -> dict[str, Any]:
+    """Return the parameters that generate_parameter_library declares, as a tree by the parts of their names.
+
+    The library makes the parts names in C++. The node itself declares a parameter with a keyword in its name, and the
+    event log if its default depends on the name of the node.
+    """
+    tree: dict[str, Any] = {}
+    if configuration.parameters == "library":
+        for parameter in declared:
+            *outer, name = parameter.name.split(".")
+            if KEYWORDS.isdisjoint([*outer, name]) and not (name == "event_log" and configuration.write_events_to_log):
+                reduce(lambda level, part: level.setdefault(part, {}), outer, tree)[name] = parameter
+    return tree
 
 
 def shipped_headers(headers: Iterable[str]) -> dict[str, str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -24,7 +24,7 @@ class NodeValues:
     """Values of a node's package that hold for every ROS version.
 
     `ros_package` is the package that contains the node: its own, or the user's. `included` are headers in `include`.
-    `parameter_groups` are the parameters of the parameters file. `typed` is the type of the typed state, None without
+    `library` are the parameters that generate_parameter_library declares, as a tree. `parameter_groups` are the parameters of the parameters file. `typed` is the type of the typed state, None without
     one, and `typed_fields` are its fields. `remembers` is whether the node records which commands are withheld.
     `reports_violations` is the warning of a node that goes on after a violation, empty for other nodes.
     `no_stop` and `turned` are the results of `packages`' functions of these names. `has_defaults` is a function of an
@@ -48,6 +48,7 @@ class NodeValues:
     settings: Configuration
     parameters: Mapping[str, Parameter]
     has_parameters_file: bool
+    library: Mapping[str, Any]
     parameter_groups: Mapping[str, Mapping[str, Parameter]]
     publishes_state: bool
     statuses: Sequence[Status]
