@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator
 
     from robosc.language.configuration import Configuration
     from robosc.model import rosgraph
@@ -18,11 +18,13 @@ def configured_names(graph: rosgraph.RosGraph | None, configuration: Configurati
     if graph is None or configuration.absolute_names:
         yield
         return
-    topics = [*graph.subscriptions, *graph.publishers, *(plant for plant in graph.model.plants if plant.topic)]
-    names = [(element, "topic", element.topic) for element in topics]
-    names += [(client, "identifier", client.identifier) for client in [*graph.serviceClients, *graph.actionClients]]
+    named: list[tuple[Any, str]] = [
+        (topic, "topic") for topic in (*graph.subscriptions, *graph.publishers, *graph.model.plants)
+    ]
+    named += [(client, "identifier") for client in (*graph.serviceClients, *graph.actionClients)]
+    names = [(element, attribute, getattr(element, attribute)) for element, attribute in named]
     for element, attribute, name in names:
-        setattr(element, attribute, name.removeprefix("/"))
+        setattr(element, attribute, name and name.removeprefix("/"))
     try:
         yield
     finally:
@@ -30,12 +32,14 @@ def configured_names(graph: rosgraph.RosGraph | None, configuration: Configurati
             setattr(element, attribute, name)
 
 
-def absolute_names(graph: rosgraph.RosGraph) -> tuple[Sequence[str], Sequence[str], Sequence[str]]:
+def absolute_names(graph: rosgraph.RosGraph) -> tuple[list[str], list[str], list[str]]:
     """Return the absolute names of topics, services and actions, each once."""
-    topics = [topic.topic for topic in [*graph.subscriptions, *graph.publishers]]
-    services, actions = (
-        [client.identifier for client in known] for known in (graph.serviceClients, graph.actionClients)
-    )
-    return tuple(
-        [*dict.fromkeys(name for name in names if name.startswith("/"))] for names in (topics, services, actions)
+
+    def absolute(names: Iterable[str]) -> list[str]:
+        return [*dict.fromkeys(name for name in names if name.startswith("/"))]
+
+    return (
+        absolute([*(end.topic for end in graph.subscriptions), *(end.topic for end in graph.publishers)]),
+        absolute(client.identifier for client in graph.serviceClients),
+        absolute(client.identifier for client in graph.actionClients),
     )
