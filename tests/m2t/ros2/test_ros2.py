@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -18,7 +19,6 @@ from ruamel.yaml import YAML
 import robosc
 from robosc.language.configuration import Configuration, Package
 from robosc.language.configuration.names import absolute_names
-from robosc.m2t.c.names import KEYWORDS
 from robosc.m2t.targets import TARGETS
 from tests.m2t.conftest import differences
 from tests.m2t.layer.test_layer import models_of
@@ -208,24 +208,33 @@ def test_names_lose_their_slash(porter: robosc.Models, porter_settings: Configur
 
 
 def test_a_library_declares_the_parameters(library: dict[str, str], tmp_path: Path) -> None:
-    """The names, types and defaults are those of the parameters file, apart from keywords of C++."""
+    """The names and defaults are those of the parameters file."""
     ((name, tree),) = YAML(typ="safe").load(library["src/cruise_controller_parameters.yaml"]).items()
     assert name == "cruise_controller_parameters"
     (declared,) = YAML(typ="safe").load(library["config/cruise_controller.yaml"]).values()
-    assert defaults(tree) == defaults_of_file(declared["ros__parameters"])
+    assert defaults(tree) == declared["ros__parameters"]
     assert tree["speed"]["validation"] == {"bounds<>": [0.05, 1.0]}
     assert "read_only" not in tree["speed"]
     assert tree["period_ms"]["read_only"] is True
     assert "<depend>generate_parameter_library</depend>" in library["package.xml"]
-    source = os.environ.get("ROBOSC_PARAMETER_LIBRARY")
-    if source is None:
-        pytest.skip("ROBOSC_PARAMETER_LIBRARY names no source folder of generate_parameter_library_py")
+    generator = shutil.which("generate_parameter_library_cpp")
+    if generator is None:
+        pytest.skip("no generate_parameter_library_cpp")
     yaml = tmp_path / "cruise_controller_parameters.yaml"
     yaml.write_text(library["src/cruise_controller_parameters.yaml"], encoding="utf-8")
-    program = "from generate_parameter_library_py.generate_cpp_header import run; import sys; run(*sys.argv[1:])"
-    command = [sys.executable, "-c", program, tmp_path / "out.hpp", yaml]
-    subprocess.run(command, env={**os.environ, "PYTHONPATH": source}, check=True)
-    assert "speed" in (tmp_path / "out.hpp").read_text(encoding="utf-8")
+    subprocess.run([generator, tmp_path / "out.hpp", yaml], check=True)
+    assert "double speed = 0.2;" in (tmp_path / "out.hpp").read_text(encoding="utf-8")
+
+
+def test_a_library_gets_no_keyword_as_a_name() -> None:
+    models = models_of(HERE.parents[2] / "examples" / "line_follower" / "line_follower.rscd")
+    settings = Configuration.model_validate({"parameters": "library"})
+    files = robosc.generate("ros2", models, settings)
+    (tree,) = YAML(typ="safe").load(files["src/line_follower_controller_parameters.yaml"]).values()
+    assert set(tree["watchdog_ms"]) == {"correction", "emergency_stop", "no_line", "scan"}
+    assert '"watchdog_ms.continue"' in files["src/line_follower_controller_node.cpp"]
+    logs = settings.model_copy(update={"write_events_to_log": True})
+    assert "event_log" not in robosc.generate("ros2", models, logs)["src/line_follower_controller_parameters.yaml"]
 
 
 def defaults(tree: dict[str, Any]) -> dict[str, Any]:
@@ -233,12 +242,6 @@ def defaults(tree: dict[str, Any]) -> dict[str, Any]:
     return {
         name: known["default_value"] if "default_value" in known else defaults(known) for name, known in tree.items()
     }
-
-
-def defaults_of_file(tree: dict[str, Any]) -> dict[str, Any]:
-    """Return the values of a parameters file that have a name in C++."""
-    plain = {name: value for name, value in tree.items() if name not in KEYWORDS}
-    return {name: defaults_of_file(value) if isinstance(value, dict) else value for name, value in plain.items()}
 
 
 @pytest.fixture(scope="module")
