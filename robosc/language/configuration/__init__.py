@@ -251,7 +251,7 @@ class Configuration(_Settings):
     lifecycle: bool = Field(default=False, description="Whether the ROS 2 node is a managed (lifecycle) node.")
     parameters: Literal["node", "library"] = Field(
         default="node",
-        description="What declares the parameters of a ROS 2 node: the node itself, or generate_parameter_library.",
+        description="Whether a ROS 2 node itself or generate_parameter_library declares its parameters.",
     )
     package: Package = Package()
 

@@ -131,12 +131,12 @@ def _remarks(model: sct.SupervisoryControlModel) -> dict[sct.Event, list[str]]:
 def shorten(explanation: str) -> str:
     """Return an explanation for code and reports: a long one with its last steps only, as many as fit."""
     steps = explanation.removeprefix("after ").split(", then ")
-    kept = 1
-    while kept < len(steps) and len(", then ".join(steps[-kept - 1 :])) <= _LONGEST:
-        kept += 1
-    if kept == len(steps):
+    shown = 1
+    while shown < len(steps) and len(", then ".join(steps[-shown - 1 :])) <= _LONGEST:
+        shown += 1
+    if shown == len(steps):
         return explanation
-    return f"after {len(steps) - kept} steps, then {', then '.join(steps[-kept:])} (`robosc explain` lists all steps)"
+    return f"after {len(steps) - shown} steps, then {', then '.join(steps[-shown:])} (`robosc explain` lists all steps)"
 
 
 def _description(event: sct.Event, edges: Edges, number: int | None) -> str:
