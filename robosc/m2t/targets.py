@@ -11,6 +11,7 @@ from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any, Literal, Protocol, TypedDict, cast
 
 from robosc.base.extensions import Extension, extensions
+from robosc.language.configuration.names import configured_names
 
 if TYPE_CHECKING:
     from contextlib import AbstractContextManager
@@ -108,7 +109,8 @@ class Target:
         names = [topic.topic for topics in (graph.subscriptions, graph.publishers) for topic in topics]
         for users in (graph.serviceClients, graph.actionClients, graph.serviceServers, graph.actionServers):
             names += [user.identifier for user in users]
-        return [*findings, *configuration.unknown_names([name.removeprefix("/") for name in names])]
+        unknown = configuration.unknown_names([name.removeprefix("/") for name in names])
+        return [*findings, *unknown, *configuration.missing_license()]
 
     @property
     def tested_ros(self) -> int | None:
@@ -133,7 +135,8 @@ class Target:
             options["tests"] = tests
         if into is not None:
             options["into"] = into
-        return cast("OptionalGenerator", self.generator()).generate(models, configuration, **options)
+        with configured_names(models.rosgraph, configuration):
+            return cast("OptionalGenerator", self.generator()).generate(models, configuration, **options)
 
     def generator(self) -> Generator:
         """Return the generator: a module of its name, or a target of `robosc.m2t.ros`. It is loaded on first use."""

@@ -59,7 +59,7 @@ def test_the_code_is_that_of_a_package_of_its_own(target: str, models: robosc.Mo
     own = robosc.generate(target, models, settings)
     part = robosc.generate(target, models, settings, into="my_robot")
     assert {path.rpartition("/")[2] for path in own} - {path.rpartition("/")[2] for path in part} == {
-        name for name in ("package.xml", "CMakeLists.txt") if name in own
+        name for name in ("CHANGELOG.rst", "CMakeLists.txt", "LICENSE", "README.md", "package.xml") if name in own
     }
     shared = own.keys() & part.keys()
     assert any(path.endswith("_supervisor.c") for path in shared)

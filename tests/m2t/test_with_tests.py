@@ -23,7 +23,10 @@ if TYPE_CHECKING:
 HERE = Path(__file__).parent
 TEST_DEPENDS = {
     "ros1": {"rosgraph_msgs", "rospy", "rostest"},
-    "ros2": {"launch_testing", "launch_testing_ament_cmake", "rclpy", "rosgraph_msgs"},
+    "ros2": {
+        *("ament_lint_auto", "ament_lint_common"),
+        *("launch_testing", "launch_testing_ament_cmake", "rclpy", "rosgraph_msgs"),
+    },
 }
 #: Files that are the same in each ROS and have one golden file for both.
 SAME = ("test/connections.json", "test/traces/tour_1.jsonl")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from dataclasses import dataclass, field
 from types import ModuleType
@@ -25,8 +26,9 @@ class Made:
     named: dict[str, Any] = field(default_factory=dict)
 
     def perform(self, context: Context) -> str:
-        """Return the value of a launch configuration."""
-        return context.launch_configurations[self.positional[0]]
+        """Return the value of a launch configuration. The path of an installed file is that of an empty file."""
+        value = context.launch_configurations[self.positional[0]]
+        return value if isinstance(value, str) else os.devnull
 
 
 @dataclass(frozen=True)
@@ -53,7 +55,8 @@ _MODULES = {
     "launch.launch_description_sources": ["AnyLaunchDescriptionSource"],
     "launch.substitutions": ["LaunchConfiguration", "PathJoinSubstitution"],
     "launch_ros": [],
-    "launch_ros.actions": ["Node", "SetRemap"],
+    "launch_ros.actions": ["LoadComposableNodes", "Node", "SetRemap"],
+    "launch_ros.descriptions": ["ComposableNode"],
     "launch_ros.parameter_descriptions": ["ParameterValue"],
     "launch_ros.substitutions": ["FindPackageShare"],
 }

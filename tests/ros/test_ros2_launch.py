@@ -59,9 +59,9 @@ def prefix(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def started(ros: Ros, prefix: Path, how: str, *arguments: str) -> dict[str, str]:
-    """Start the layer and its controller; return their arguments and output, by package."""
-    file = prefix / "share" / LAYER / "launch" / f"{LAYER}.launch.py"
+def started(ros: Ros, prefix: Path, how: str, *arguments: str, package: str = LAYER) -> dict[str, str]:
+    """Start the layer and its controller, or the controller alone; return their arguments and output, by package."""
+    file = prefix / "share" / package / "launch" / f"{package}.launch.py"
     done = subprocess.run(
         [ros.python, HERE / "launch_ros2.py", file, how, *arguments],
         env={**ros.environment, "AMENT_PREFIX_PATH": f"{prefix}:{ros.environment['AMENT_PREFIX_PATH']}"},
@@ -73,7 +73,8 @@ def started(ros: Ros, prefix: Path, how: str, *arguments: str) -> dict[str, str]
     assert done.returncode == 0, done.stdout + done.stderr
     lines = [re.match(r"\[(\w+)-\d+\] (.*)", line) for line in done.stdout.splitlines()]
     said = {name: "\n".join(line[2] for line in lines if line and line[1] == name) for name in (LAYER, CONTROLLER)}
-    assert all(said.values()), done.stdout + done.stderr
+    assert said[CONTROLLER], done.stdout + done.stderr
+    assert said[LAYER] or package == CONTROLLER, done.stdout + done.stderr
     return said
 
 
@@ -104,3 +105,17 @@ def test_a_clock_that_is_asked_for_holds_for_both(ros: Ros, prefix: Path) -> Non
         assert "use_sim_time: true" in text
     for text in started(ros, prefix, "plain").values():
         assert "use_sim_time" not in text
+
+
+def test_parameters_of_the_default_name_apply_to_another_name(ros: Ros, prefix: Path) -> None:
+    """The node's own name is in the file that the launch system writes for it."""
+    said = started(ros, prefix, "plain", "name=other", "namespace=left", package=CONTROLLER)[CONTROLLER]
+    named = said.partition("/left/other")[2]
+    assert "period_ms: 100" in named
+    assert "watchdog_ms.scan: 0" in named
+
+
+def test_a_node_that_died_starts_again(ros: Ros, prefix: Path) -> None:
+    """The stand-in ends at once: the launch system starts it again until it is stopped."""
+    assert started(ros, prefix, "stopped", "use_respawn=true", package=CONTROLLER)[CONTROLLER].count("started ") > 1
+    assert started(ros, prefix, "stopped", package=CONTROLLER)[CONTROLLER].count("started ") == 1

@@ -38,6 +38,10 @@ NO_STOP_ON_VIOLATION = (
 REPORTS_VIOLATIONS = (
     "onViolation is report: after the first violation of an assumption, nothing about the robot is proved"
 )
+#: Warning of a node at its start: its namespace, and the names of the model outside of it.
+ABSOLUTE_NAMES = 'the namespace %s does not apply to %s: see "absoluteNames" in the configuration'
+#: Licenses whose text a package gets.
+LICENSE_TEXTS = ("Apache-2.0", "BSD-3-Clause", "MIT")
 #: Maximum depth of folders below the model in the search for a configuration.
 SEARCH_DEPTH = 3
 
@@ -170,7 +174,12 @@ class Package(_Settings):
         default="unknown@example.com",
         pattern=r"^[-a-zA-Z0-9_%+]+(\.[-a-zA-Z0-9_%+]+)*@([-a-zA-Z0-9%]+\.)+[a-zA-Z]{2,}$",
     )
-    license: str = Field(default="Proprietary", min_length=1)
+    license: str = Field(
+        default="Proprietary",
+        min_length=1,
+        description=f"SPDX identifier. The package gets the text of {', '.join(LICENSE_TEXTS)}.",
+    )
+    url: str | None = Field(default=None, pattern=r"^https?://\S+$", description="Website of the package.")
     description: str | None = Field(
         default=None, min_length=1, description="Default: a sentence with the robot's name."
     )
@@ -198,6 +207,11 @@ class Configuration(_Settings):
     actions: Actions = Actions()
     retry_ms: Milliseconds = Field(
         default=1000, description="Time from the failure of a service or action to its reset, in milliseconds."
+    )
+    absolute_names: bool = Field(
+        default=True,
+        description="Whether names of topics, services and actions keep their leading /. Without it, the namespace of"
+        " the node applies to them. If absent, a node in a namespace warns of such names.",
     )
     frame_id: ByTopic[str] = Field(default={}, description="Frame of headers that the model leaves unset, by topic.")
     qos: ByTopic[QualityOfService] = Field(
@@ -235,6 +249,10 @@ class Configuration(_Settings):
         " actions and send onShutdown, a layer onBlocked, until the node is started again. report: go on.",
     )
     lifecycle: bool = Field(default=False, description="Whether the ROS 2 node is a managed (lifecycle) node.")
+    parameters: Literal["node", "library"] = Field(
+        default="node",
+        description="Whether a ROS 2 node itself or generate_parameter_library declares its parameters.",
+    )
     package: Package = Package()
 
     _file: str = PrivateAttr(FILE_NAME)
@@ -272,9 +290,23 @@ class Configuration(_Settings):
         """Whether the user has decided on the messages at the node's end, possibly none."""
         return "on_shutdown" in self.model_fields_set
 
+    @property
+    def warns_of_absolute_names(self) -> bool:
+        """Whether a node in a namespace warns of absolute names: the user has not decided on them."""
+        return "absolute_names" not in self.model_fields_set
+
     def stops_on_violation(self, model: "SupervisoryControlModel") -> bool:
         """Return whether the first violation of an assumption of the model stops the robot."""
         return self.on_violation == "stop" and bool(assumptions(model))
+
+    def missing_license(self) -> list[Diagnostic]:
+        """Return a warning about a license whose text the package does not get."""
+        package = self.package
+        if package.license in {*LICENSE_TEXTS, Package().license}:
+            return []
+        message = f'"package.license": the package gets no LICENSE file for {package.license}'
+        hint = f"add the file yourself, or name one of {', '.join(LICENSE_TEXTS)}"
+        return [self.warning(("package", "license"), message, hint)]
 
     @property
     def watchdog_meaning(self) -> str:

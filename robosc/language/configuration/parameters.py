@@ -30,6 +30,11 @@ class Parameter:
     bounds: tuple[float, float] | None = None
     changes: bool = False
 
+    @property
+    def type_name(self) -> str:
+        """Name of the type in ROS."""
+        return {bool: "bool", int: "integer", float: "double", str: "string"}[type(self.default)]
+
 
 _DAY = 24 * 3600 * 1000
 _COUNT = 0xFFFF

@@ -18,6 +18,9 @@ Edges = dict[sct.Location | None, list[sct.Edge]]
 #: Edges of each event in each plant that takes part in it, in the order of the plants.
 EdgeTable = dict[sct.Event, dict[sct.Plant, Edges]]
 
+#: Characters of an explanation in code and reports, unless its last step alone is longer.
+_LONGEST = 300
+
 #: Sentence for an event by the kinds of the event and its plant, else by the kind of the event.
 _OF_KIND = {
     (sct.EventKind.trigger, sct.PlantKind.message): "{what} is sent{on}.",
@@ -129,8 +132,19 @@ def _remarks(model: sct.SupervisoryControlModel) -> dict[sct.Event, list[str]]:
             remarks.setdefault(requirement.event, []).append(remark(requirement))
     for guard in model.supervisor.guards if model.supervisor else ():
         if guard.explanation:
-            remarks.setdefault(guard.event, []).append(f"synthesis prevents this: {guard.explanation}")
+            remarks.setdefault(guard.event, []).append(f"synthesis prevents this: {shorten(guard.explanation)}")
     return remarks
+
+
+def shorten(explanation: str) -> str:
+    """Return an explanation for code and reports: a long one with its last steps only, as many as fit."""
+    steps = explanation.removeprefix("after ").split(", then ")
+    shown = 1
+    while shown < len(steps) and len(", then ".join(steps[-shown - 1 :])) <= _LONGEST:
+        shown += 1
+    if shown == len(steps):
+        return explanation
+    return f"after {len(steps) - shown} steps, then {', then '.join(steps[-shown:])} (`robosc explain` lists all steps)"
 
 
 def _description(event: sct.Event, edges: Edges, number: int | None) -> str:

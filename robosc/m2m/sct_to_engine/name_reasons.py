@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.m2m.sct_to_engine.build_expressions import build_expression
+from robosc.m2m.sct_to_engine.collect_events import shorten
 from robosc.model import engine, sct
 from robosc.model.semantics.roles import assumption_text
 
@@ -44,7 +45,7 @@ def name_reasons(
         if element.role in _COMMANDS:
             element.reasons.extend(_of_plants(guards[event].by_plant, lower))
             if event in explained:
-                element.reasons.append(engine.Reason(kind=engine.Origin.synthesis, text=explained[event]))
+                element.reasons.append(engine.Reason(kind=engine.Origin.synthesis, text=shorten(explained[event])))
 
 
 def _of_assumptions(possible: Mapping[sct.Plant, Term], lower: Lowering) -> Iterator[engine.Reason]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from itertools import groupby
 from typing import TYPE_CHECKING
 
+from robosc.language.configuration.names import absolute_names
 from robosc.language.configuration.parameters import model_parameters
 from robosc.m2t.c.comments import string_literal
 from robosc.m2t.c.expressions import type_name
@@ -292,6 +293,8 @@ class GeneratedNode:
         self._sent = Names()
         self.robot = graph.name
         self.prefix = self._names.c.prefix
+        #: Absolute names of topics, services and actions.
+        self.absolute = absolute_names(graph)
         #: Time argument of engine calls; empty if the model has no timers.
         self.at = ", alarm_->at()" if executed.timers else ""
         self.enumerations = [self._enumeration(enumeration) for enumeration in graph.enumerations]

@@ -4,12 +4,21 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar, Literal, Protocol
+from functools import reduce
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol
 
 from robosc.base.files.resources import locate
-from robosc.language.configuration import NO_STOP, NO_STOP_ON_SILENCE, NO_STOP_ON_VIOLATION, REPORTS_VIOLATIONS
+from robosc.language.configuration import (
+    ABSOLUTE_NAMES,
+    LICENSE_TEXTS,
+    NO_STOP,
+    NO_STOP_ON_SILENCE,
+    NO_STOP_ON_VIOLATION,
+    REPORTS_VIOLATIONS,
+)
 from robosc.language.configuration.parameters import controller_parameters, layer_parameters
 from robosc.m2t.c import engine
+from robosc.m2t.c.names import KEYWORDS
 from robosc.m2t.ros import preconditions, typed_state
 from robosc.m2t.ros.gates import gates
 from robosc.m2t.ros.layer import LayerNode
@@ -33,13 +42,14 @@ if TYPE_CHECKING:
     from robosc.model.engine import EngineModel
 
 #: Files of a stand-alone package: path to template.
-_PACKAGE = {"package.xml": "package.xml.j2", "CMakeLists.txt": "CMakeLists.txt.j2"}
+_PACKAGE = {name: f"{name}.j2" for name in ("package.xml", "CMakeLists.txt", "README.md", "CHANGELOG.rst")}
 #: Types of geometry_msgs that contain only numbers: no header, no quaternion.
 _PLAIN = frozenset(["Accel", "Inertia", "Point", "Point32", "Polygon", "Twist", "Vector3", "Wrench"])
 _INCLUDED = re.compile(r'^#include "(robosc[^"]*)"$', re.MULTILINE)
 
 #: Headers in `include`, each with the features of a node that need it (empty: always). `{ros}` is the ROS version.
 _HEADERS = {
+    "robosc/absolute_names": {"absolute"},
     "robosc/block_reasons": {"gates"},
     "robosc/component_status": {"statuses"},
     "robosc/data": set(),
@@ -94,6 +104,9 @@ class Middleware(Protocol):
     launch_file: ClassVar[str]
     #: Files that `--with-tests` adds to a controller: path to template.
     test_files: ClassVar[Mapping[str, str]]
+
+    def spelled(self, interface: rosgraph.Interface) -> str:
+        """Return the name of a type as the tools of this ROS version print it."""
 
     def controller(
         self, node: GeneratedNode, configuration: Configuration, used: UsedPackages, *, tests: bool
@@ -153,6 +166,7 @@ class RosTarget:
             "robot": graph.name,
             "package": package,
             "about": configuration.package,
+            "has_license": bool(_license(configuration)),
             "message": typed_state.MESSAGE,
             "fields": typed_state.fields(graph, CppNames(graph)),
         }
@@ -161,6 +175,7 @@ class RosTarget:
             "package.xml": "interfaces_package.xml.j2",
             "CMakeLists.txt": "interfaces_CMakeLists.txt.j2",
             f"msg/{typed_state.MESSAGE}.msg": "State.msg.j2",
+            **_license(configuration),
         }
         return {f"{package}/{path}": templates.get_template(name).render(values) for path, name in files.items()}
 
@@ -184,11 +199,14 @@ class RosTarget:
         source, definition = f"src/{name}_node.cpp", f"include/{name}/definition.hpp"
         # Users rarely set a layer's parameters, except for the model's own.
         has_file = kind == "controller" or bool(node.parameters)
+        declared = (layer_parameters if layer else controller_parameters)(graph, configuration, "")
+        library = _library(declared, configuration) if ros.version == 2 else {}
         files = {
-            **({"fragment.cmake": "fragment.cmake.j2"} if into else _PACKAGE),
+            **({"fragment.cmake": "fragment.cmake.j2"} if into else _PACKAGE | _license(configuration)),
             f"launch/{name}{ros.launch_file}": f"{kind}_launch.j2",
             source: f"{kind}_node.cpp.j2",
             **({f"config/{name}.yaml": "parameters.yaml.j2"} if has_file else {}),
+            **({f"src/{name}_parameters.yaml": "library.yaml.j2"} if library else {}),
             **({definition: "definition.hpp.j2"} if configuration.publish_state_information else {}),
             **(_test_files(ros, name, into) if tests else {}),
         }
@@ -207,7 +225,6 @@ class RosTarget:
         types = {interface.package for interface in [*node.interfaces, *reports]}
         used = UsedPackages({package for package in types if package != into}, reports)
         own = [definition.removeprefix("include/")] if configuration.publish_state_information else []
-        declared = (layer_parameters if layer else controller_parameters)(graph, configuration, "")
         text = f"The {'supervisory controller' if kind == 'controller' else 'supervisory layer'} of {graph.name}."
         values = NodeValues(
             kind=kind,
@@ -219,11 +236,15 @@ class RosTarget:
             has_own_types=into in types,
             player=_player(name, into),
             about=configuration.package,
+            has_license=bool(_license(configuration)),
+            described_reports=_described(reports_blocked, reported_statuses, kind_of_state, configuration),
+            spelled=ros.spelled,
             description=configuration.package.description or text,
             included=sorted([*own, *(f"{header}.hpp" for header in included)]),
             settings=configuration,
             parameters={parameter.name: parameter for parameter in declared},
             has_parameters_file=has_file,
+            library=library,
             # The launch file of a layer has an argument for its log.
             parameter_groups=_groups(
                 parameter
@@ -245,6 +266,7 @@ class RosTarget:
             awaited=_awaited(node, configuration) if kind == "controller" else [],
             turned=_turned(node) if ros.version == 1 else [],
             has_defaults=has_defaults,
+            absolute_warning=ABSOLUTE_NAMES,
             frame=lambda topic: configuration.frame_id.get(topic.removeprefix("/"), ""),
         )
         if layer and self.layer:
@@ -282,6 +304,7 @@ class RosTarget:
         present = {
             self.kind: True,
             f"ros{self.ros.version}": True,
+            "absolute": configuration.warns_of_absolute_names and any(node.absolute),
             "actions": node.actions,
             "assumptions": node.assumed,
             "awaits": _awaited(node, configuration),
@@ -303,6 +326,27 @@ class RosTarget:
         }
         features = {feature for feature, is_there in present.items() if is_there}
         return [name.format(ros=self.ros.version) for name, needed in _HEADERS.items() if needed <= features]
+
+
+def _license(configuration: Configuration) -> dict[str, str]:
+    """Return the path and the template of the license's text, if RoboSC has it."""
+    name = configuration.package.license
+    return {"LICENSE": f"licenses/{name}.j2"} if name in LICENSE_TEXTS else {}
+
+
+def _described(
+    reports_blocked: bool, statuses: Sequence[Status], typed: rosgraph.Interface, configuration: Configuration
+) -> list[tuple[str, rosgraph.Interface, str]]:
+    """Return the topics of a node's reports about itself: name, type and content."""
+    shown = configuration.publish_state_information
+    described = [
+        ("~/state", _TEXT, "the state of each component, as JSON", shown),
+        ("~/definition", _TEXT, "the model: components, states, transitions, requirements; as JSON", shown),
+        ("~/typed_state", typed, "the state of each component", shown and configuration.typed_state),
+        ("~/blocked", _TEXT, "each blocked command with the reason, as JSON", reports_blocked),
+        ("/diagnostics", _STATUSES, "a status for each component", bool(statuses)),
+    ]
+    return [(name, kind, content) for name, kind, content, published in described if published]
 
 
 def _turned(node: GeneratedNode) -> list[tuple[Variable, str]]:
@@ -341,6 +385,21 @@ def _groups(declared: Iterable[Parameter]) -> dict[str, dict[str, Parameter]]:
         group, _, name = parameter.name.rpartition(".")
         groups.setdefault(group, {})[name] = parameter
     return groups
+
+
+def _library(declared: Iterable[Parameter], configuration: Configuration) -> dict[str, Any]:
+    """Return the parameters that generate_parameter_library declares, as a tree by the parts of their names.
+
+    The library makes the parts names in C++. The node itself declares a parameter with a keyword in its name, and the
+    event log if its default depends on the name of the node.
+    """
+    tree: dict[str, Any] = {}
+    if configuration.parameters == "library":
+        for parameter in declared:
+            *outer, name = parameter.name.split(".")
+            if KEYWORDS.isdisjoint([*outer, name]) and not (name == "event_log" and configuration.write_events_to_log):
+                reduce(lambda level, part: level.setdefault(part, {}), outer, tree)[name] = parameter
+    return tree
 
 
 def shipped_headers(headers: Iterable[str]) -> dict[str, str]:

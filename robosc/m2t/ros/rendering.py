@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import textwrap
 from bisect import bisect_right
@@ -33,6 +34,8 @@ def node_environment(middleware: str) -> Environment:
         shift=shift,
         xml=xml_text,
         attribute=xml_attribute,
+        cell=table_cell,
+        yaml=yaml_value,
     )
     templates.globals["queue_depth"] = QUEUE_DEPTH
     return templates
@@ -109,6 +112,17 @@ def xml_text(text: str) -> str:
 def xml_attribute(text: str) -> str:
     """Return the text as a quoted attribute value."""
     return quoteattr(_printable(text))
+
+
+def table_cell(text: str) -> str:
+    """Return the text for a cell of a Markdown table: one line without `|`."""
+    return " ".join(_printable(text).replace("|", "\\|").split())
+
+
+def yaml_value(value: bool | float | str) -> str:
+    """Return a value in YAML. A double has a point, without which YAML 1.1 reads an exponent as text."""
+    text = json.dumps(value)
+    return re.sub(r"^(-?\d+)e", r"\1.0e", text) if isinstance(value, float) else text
 
 
 def _printable(text: str) -> str:

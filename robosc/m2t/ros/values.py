@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -24,11 +24,13 @@ class NodeValues:
     """Values of a node's package that hold for every ROS version.
 
     `ros_package` is the package that contains the node: its own, or the user's. `included` are headers in `include`.
-    `parameter_groups` are the parameters of the parameters file. `typed` is the type of the typed state, None without
-    one, and `typed_fields` are its fields. `remembers` is whether the node records which commands are withheld.
-    `reports_violations` is the warning of a node that goes on after a violation, empty for other nodes.
-    `no_stop` and `turned` are the results of `packages`' functions of these names. `has_defaults` is a function of an
-    interface, `frame` one of a topic.
+    `parameter_groups` are the parameters of the parameters file, `library` those that generate_parameter_library
+    declares, as a tree. `typed` is the type of the typed state, None without one, and `typed_fields` are its fields.
+    `remembers` is whether the node records which commands are withheld. `reports_violations` is the warning of a node
+    that goes on after a violation, empty for other nodes. `absolute_warning` is the format of the warning of absolute
+    names. `has_license` is whether the package has the text of its license. `described_reports` are the topics of the
+    node's reports: name, type and content. `no_stop` and `turned` are the results of `packages`' functions of these
+    names. `has_defaults` and `spelled` are functions of an interface, `frame` one of a topic.
     """
 
     kind: str
@@ -40,11 +42,15 @@ class NodeValues:
     has_own_types: bool
     player: str
     about: Package
+    has_license: bool
+    described_reports: Sequence[tuple[str, rosgraph.Interface, str]]
+    spelled: Callable[[rosgraph.Interface], str]
     description: str
     included: Sequence[str]
     settings: Configuration
     parameters: Mapping[str, Parameter]
     has_parameters_file: bool
+    library: Mapping[str, Any]
     parameter_groups: Mapping[str, Mapping[str, Parameter]]
     publishes_state: bool
     statuses: Sequence[Status]
@@ -60,6 +66,7 @@ class NodeValues:
     stops_on_violation: bool
     awaited: Sequence[str]
     turned: Sequence[tuple[Variable, str]]
+    absolute_warning: str
     has_defaults: Callable[[rosgraph.Interface], bool]
     frame: Callable[[str], str]
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from robosc.analysis.wording import words
 from robosc.base.files.resources import locate
 from robosc.base.ros_types import RosTypes
+from robosc.language.configuration.names import configured_names
 from robosc.m2t.models import TraceTest
 from robosc.model import sct
 from robosc.model.semantics.printing import SctPrinter
@@ -69,7 +70,8 @@ def player_files(
     incoming: Mapping[sct.Event, IncomingKind],
 ) -> dict[str, str]:
     """Return the player's files with its description of a node started with these parameters: file to text."""
-    connected = json.dumps(_connections(graph, configuration, started, incoming), indent=1) + "\n"
+    with configured_names(graph, configuration):
+        connected = json.dumps(_connections(graph, configuration, started, incoming), indent=1) + "\n"
     player = locate("run/node_tests/trace_player.py").read_text(encoding="utf-8")
     return {"connections.json": connected, "trace_player.py": player}
 

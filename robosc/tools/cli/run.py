@@ -71,6 +71,7 @@ def command(
 
 
 def _run(models: Models, configuration: Configuration, arguments: Sequence[str], *, layer: bool) -> None:
+    from robosc.language.configuration.names import configured_names
     from robosc.model.semantics.messages import find_message
     from robosc.run.runtime.core.node import StartError
     from robosc.run.runtime.core.settings import SafeMessages
@@ -91,9 +92,7 @@ def _run(models: Models, configuration: Configuration, arguments: Sequence[str],
     gc.freeze()
     gc.set_threshold(700, 10, 10)
     try:
-        if layer:
-            run_layer(graph, configuration, arguments, safe)
-        else:
-            run_controller(graph, configuration, arguments, safe)
+        with configured_names(graph, configuration):
+            (run_layer if layer else run_controller)(graph, configuration, arguments, safe)
     except StartError as error:
         raise CallError(f"{error}\n  {error.hint}" if error.hint else str(error)) from error

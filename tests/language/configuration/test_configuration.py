@@ -33,6 +33,7 @@ EVERYTHING = {
     "services": {"timeoutMs": 2000},
     "actions": {"timeoutMs": 3000},
     "retryMs": 400,
+    "absoluteNames": False,
     "frameId": {"/scan": "laser"},
     "qos": {"scan": {"reliability": "best_effort", "durability": "volatile", "depth": 3}},
     "watchdogMs": {"/scan": 500},
@@ -43,12 +44,14 @@ EVERYTHING = {
     "waitFor": ["/scan"],
     "onViolation": "report",
     "lifecycle": True,
+    "parameters": "library",
     "package": {
         "name": "my_robot",
         "version": "1.2.3",
         "maintainer": "A. Person",
         "email": "a.person@example.org",
         "license": "MIT",
+        "url": "https://example.org/robot",
         "description": "Drives.",
     },
 }

@@ -15,6 +15,7 @@ from robosc.base.cache import cache_results
 from robosc.base.diagnostics import ModelError
 from robosc.engine import Engine
 from robosc.m2m.sct_to_engine import transform
+from robosc.m2m.sct_to_engine.collect_events import shorten
 from robosc.model import engine, sct, xmi
 from robosc.model import expression as ex
 from robosc.model.reflection import tree
@@ -344,6 +345,19 @@ def test_reasons_are_requirements_plants_and_what_synthesis_prevents() -> None:
             ("synthesis", "true", "p stays far for ever", None),
         ],
     }
+
+
+@pytest.mark.parametrize(("steps", "kept"), [(1, 1), (4, 4), (30, 6)])
+def test_an_explanation_has_as_many_of_its_last_steps_as_fit(steps: int, kept: int) -> None:
+    trace = [f"request to `Base.number_{number:04} goes` " for number in range(steps)]
+    text = f"after {', then '.join(trace)}, `requirement R` is violated"
+    short = shorten(text)
+    if kept == steps:
+        assert short == text
+        return
+    assert short.startswith(f"after {steps - kept} steps, then {trace[steps - kept]}")
+    assert short.endswith("`requirement R` is violated (`robosc explain` lists all steps)")
+    assert len(short) < 400
 
 
 def test_readers_are_those_of_what_an_event_writes() -> None:

@@ -1,7 +1,10 @@
 // Checks of what a node tells about its state. Prints what does not hold, as `headers.cpp`.
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "checks.hpp"
+#include "robosc/absolute_names.hpp"
 #include "robosc/block_reasons.hpp"
 #include "robosc/json.hpp"
 #include "robosc/transitions.hpp"
@@ -40,11 +43,19 @@ void what_is_blocked_is_told_with_its_reason() {
         R"({"robot":"Robot","time":2.5,"name":"go","event":"Base.go","reason":"state","because":["Base.parked"],"components":{}})");
 }
 
+void names_outside_of_a_namespace_are_told() {
+  const std::vector<std::pair<std::string, std::string>> names = {
+      {"/scan", "/scan"}, {"/stop", "/left/stop"}, {"/go", "/leftover/go"}};
+  CHECK(names_outside("/left", names) == "/scan, /go");
+  CHECK(names_outside("/", names).empty() && names_outside("", names).empty());
+}
+
 }  // namespace
 
 int main() {
   the_last_are_kept();
   all_who_listen_are_told();
   what_is_blocked_is_told_with_its_reason();
+  names_outside_of_a_namespace_are_told();
   return faults;
 }

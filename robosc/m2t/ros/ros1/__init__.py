@@ -42,6 +42,10 @@ class Ros1:
         action = "Action" if interface.kind == rosgraph.InterfaceKind.action else ""
         return f"{interface.package}/{interface.type}{action}.h"
 
+    def spelled(self, interface: rosgraph.Interface) -> str:
+        """Return the name of a type, such as `sensor_msgs/LaserScan`."""
+        return f"{interface.package}/{interface.type}"
+
     def controller(
         self,
         node: GeneratedNode,

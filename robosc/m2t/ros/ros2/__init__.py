@@ -89,6 +89,10 @@ class Ros2:
         name = re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", words).lower()
         return f"{interface.package}/{_FOLDERS[interface.kind.name]}/{name}.hpp"
 
+    def spelled(self, interface: rosgraph.Interface) -> str:
+        """Return the name of a type, such as `sensor_msgs/msg/LaserScan`."""
+        return f"{interface.package}/{_FOLDERS[interface.kind.name]}/{interface.type}"
+
     def controller(
         self, node: GeneratedNode, configuration: Configuration, used: UsedPackages, *, tests: bool
     ) -> ControllerValues:
@@ -106,8 +110,8 @@ class Ros2:
         return ControllerValues(
             headers=self._headers(node, used.reports),
             build_tool=_BUILD_TOOL,
-            dependencies=_dependencies(libraries, types),
-            package_depends=_package_depends(libraries, types, started, _TESTED if tests else []),
+            dependencies=_dependencies(libraries, types, configuration),
+            package_depends=_package_depends(libraries, types, configuration, started, _TESTED if tests else []),
             messages=sorted(types),
             libraries=[f"{library}::{library}" for library in libraries],
             client_qos=lambda client: _client(client, configuration),
@@ -130,8 +134,8 @@ class Ros2:
         return LayerValues(
             headers=self._headers(layer.node, used.reports),
             build_tool=_BUILD_TOOL,
-            dependencies=_dependencies(libraries, types),
-            package_depends=_package_depends(libraries, types, started),
+            dependencies=_dependencies(libraries, types, configuration),
+            package_depends=_package_depends(libraries, types, configuration, started),
             messages=sorted(types),
             libraries=[f"{library}::{library}" for library in libraries],
             client_qos=lambda client: _client(client, configuration),
@@ -150,15 +154,20 @@ class Ros2:
         return sorted({self.header(interface) for interface in [*node.interfaces, *reports]} | always)
 
 
-def _dependencies(libraries: Sequence[str], types: set[str]) -> list[str]:
+def _dependencies(libraries: Sequence[str], types: set[str], configuration: Configuration) -> list[str]:
     """Return the packages that a node needs: its libraries and the packages of its types."""
-    return sorted({*libraries, "rclcpp_components", *types})
+    declaring = ["generate_parameter_library"] if configuration.parameters == "library" else []
+    return sorted({*libraries, *declaring, "rclcpp_components", *types})
 
 
 def _package_depends(
-    libraries: Sequence[str], types: set[str], started: Collection[str], tested: Sequence[str] = ()
+    libraries: Sequence[str],
+    types: set[str],
+    configuration: Configuration,
+    started: Collection[str],
+    tested: Sequence[str] = (),
 ) -> list[tuple[str, Sequence[str]]]:
-    return [("", _dependencies(libraries, types)), ("exec_", sorted(started)), ("test_", tested)]
+    return [("", _dependencies(libraries, types, configuration)), ("exec_", sorted(started)), ("test_", tested)]
 
 
 def _reception(topic: Subscription | Publisher, configuration: Configuration) -> Quality:

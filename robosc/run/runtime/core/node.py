@@ -10,6 +10,7 @@ from itertools import zip_longest
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from robosc.base.ros_types.wire import FOLDERS, Section
+from robosc.language.configuration import ABSOLUTE_NAMES
 from robosc.model import rosgraph
 from robosc.run.runtime.core.layer import Layer
 from robosc.run.runtime.core.node_data import element_type
@@ -118,6 +119,15 @@ class RunningNode(ControllerPort, ABC):
         except self.refusals as error:
             raise StartError(str(error)) from None
         self._follow_parameters(handler)
+        if settings.configuration.warns_of_absolute_names:
+            self._warn_of_absolute_names()
+
+    def _warn_of_absolute_names(self) -> None:
+        """Warn of the model's names that are outside of the node's namespace, after remapping."""
+        namespace = self.full_name.rpartition("/")[0]
+        outside = [name for name, resolved in self._absolute_names() if not resolved.startswith(f"{namespace}/")]
+        if namespace and outside:
+            self.warn(ABSOLUTE_NAMES % (namespace, ", ".join(outside)))
 
     def _connect_controller(self, controller: Controller) -> None:
         for publisher in self._graph.publishers:
@@ -171,6 +181,10 @@ class RunningNode(ControllerPort, ABC):
     @abstractmethod
     def _follow_parameters(self, handler: EventHandler) -> None:
         """Report parameters that change while the node runs to the handler, between batches."""
+
+    @abstractmethod
+    def _absolute_names(self) -> Sequence[tuple[str, str]]:
+        """Return the absolute names of the model, each with its name in the ROS graph."""
 
     @property
     @abstractmethod

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from robosc.base.ros_types import Section
 from robosc.base.ros_types.wire import FOLDERS
 from robosc.language.configuration import quality
+from robosc.language.configuration.names import absolute_names
 from robosc.language.configuration.quality import Profile
 from robosc.model import rosgraph
 from robosc.model.semantics.communication import QUEUE_DEPTH
@@ -74,6 +75,8 @@ _PROFILES = {
 }
 #: QoS policies that parameters may set of a subscription that receives kept messages.
 _KEPT_POLICIES = (QoSPolicyKind.HISTORY, QoSPolicyKind.DEPTH)
+#: Service of an action that takes its goals, below the action's name.
+_SENDING = "/_action/send_goal"
 #: Seconds between two looks at the publishers of topics.
 _LOOK = 0.05
 #: Messages of a topic handled before an expired timer, and before the turn of the next topic.
@@ -126,6 +129,12 @@ class Ros2Node(RunningNode):
     @property
     def full_name(self) -> str:
         return str(self.node.get_fully_qualified_name())
+
+    def _absolute_names(self) -> list[tuple[str, str]]:
+        topics, services, actions = absolute_names(self._graph)
+        resolved = [(topic, self.node.resolve_topic_name(topic)) for topic in topics]
+        resolved += [(service, self.node.resolve_service_name(service)) for service in services]
+        return resolved + [(action, self.node.resolve_service_name(f"{action}{_SENDING}")) for action in actions]
 
     def open_reports(self, names: Sequence[str]) -> None:
         for name in names:
@@ -270,7 +279,7 @@ class Ros2Node(RunningNode):
         return f"{interface.package}/{FOLDERS[interface.kind.name]}/{interface.type}"
 
     def serving_nodes(self, client: Client) -> list[tuple[str, str]]:
-        part = ("/_action/send_goal", "_SendGoal") if isinstance(client, rosgraph.ActionClient) else ("", "")
+        part = (_SENDING, "_SendGoal") if isinstance(client, rosgraph.ActionClient) else ("", "")
         name = self.node.resolve_service_name(client.identifier + part[0])
         own = self.type_name(client.interface) + part[1]
         # The types of clients are among these; the exact list of servers takes longer.

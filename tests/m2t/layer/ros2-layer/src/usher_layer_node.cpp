@@ -27,6 +27,7 @@
 #include <std_msgs/msg/string.hpp>
 #include <std_srvs/srv/set_bool.hpp>
 
+#include "robosc/absolute_names.hpp"
 #include "robosc/block_reasons.hpp"
 #include "robosc/component_status.hpp"
 #include "robosc/data.hpp"
@@ -155,6 +156,19 @@ class Layer : public GuardedNode<rclcpp::Node> {
     go_to_proxy_ = std::make_unique<ActionProxy<nav2_msgs::action::NavigateToPose>>(
         *this, guard_, "~/controller/go_to", "/go_to",
         rclcpp::QoS(10).keep_last(20).best_effort(), action_timeout, go_to_handlers);
+    const std::string space = get_namespace();
+    const std::string outside = names_outside(space, {
+        {"/stop", get_node_topics_interface()->resolve_topic_name("/stop")},
+        {"/resume", get_node_topics_interface()->resolve_topic_name("/resume")},
+        {"/scan", get_node_topics_interface()->resolve_topic_name("/scan")},
+        {"/speed", get_node_topics_interface()->resolve_topic_name("/speed")},
+        {"/lamp/light", get_node_services_interface()->resolve_service_name("/lamp/light")},
+        {"/go_to", get_node_services_interface()->resolve_service_name("/go_to/_action/send_goal")},
+    });
+    if (!outside.empty()) {
+      RCLCPP_WARN(get_logger(), "the namespace %s does not apply to %s: see \042absoluteNames\042 in the configuration",
+          space.c_str(), outside.c_str());
+    }
     timer_ = create_wall_timer(period, guard_([this] { report(); }));
     const auto undecided = [this] {
       const auto lock = guard_.hold();

@@ -25,6 +25,7 @@
 #include <std_msgs/UInt8.h>
 
 #include "courier_controller/definition.hpp"
+#include "robosc/absolute_names.hpp"
 #include "robosc/block_reasons.hpp"
 #include "robosc/component_status.hpp"
 #include "robosc/data.hpp"
@@ -155,6 +156,14 @@ class Controller : public ControllerNode {
         [this](const auto& watchdog) { on_silence("word", watchdog); }, node_);
     word_subscription_ = subscribe<std_msgs::String>("word", [this](const auto& message) { on_word(message); });
     word_watchdog_->start();
+    const std::string space = ros::this_node::getNamespace();
+    const std::string outside = names_outside(space, {
+        {"/scan", ros::names::resolve("/scan")},
+    });
+    if (!outside.empty()) {
+      ROS_WARN("the namespace %s does not apply to %s: see \042absoluteNames\042 in the configuration", space.c_str(),
+          outside.c_str());
+    }
     start(period);
     warn_of_no_stop();
   }

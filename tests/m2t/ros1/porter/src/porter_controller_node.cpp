@@ -25,6 +25,7 @@
 #include <std_srvs/Trigger.h>
 
 #include "porter_controller/definition.hpp"
+#include "robosc/absolute_names.hpp"
 #include "robosc/block_reasons.hpp"
 #include "robosc/component_status.hpp"
 #include "robosc/data.hpp"
@@ -154,6 +155,16 @@ class Controller : public ControllerNode {
         [this](const auto& watchdog) { on_silence("/stop", watchdog); }, node_);
     stop_subscription_ = subscribe<std_msgs::Empty>("/stop", [this](const auto& message) { on_stop(message); });
     stop_watchdog_->start();
+    const std::string space = ros::this_node::getNamespace();
+    const std::string outside = names_outside(space, {
+        {"/stop", ros::names::resolve("/stop")},
+        {"/gripper/grip", ros::names::resolve("/gripper/grip")},
+        {"/travel", ros::names::resolve("/travel/goal")},
+    });
+    if (!outside.empty()) {
+      ROS_WARN("the namespace %s does not apply to %s: see \042absoluteNames\042 in the configuration", space.c_str(),
+          outside.c_str());
+    }
     start(period);
   }
 

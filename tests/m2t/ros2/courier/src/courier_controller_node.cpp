@@ -27,6 +27,7 @@
 #include <std_msgs/msg/u_int8.hpp>
 
 #include "courier_controller/definition.hpp"
+#include "robosc/absolute_names.hpp"
 #include "robosc/block_reasons.hpp"
 #include "robosc/component_status.hpp"
 #include "robosc/data.hpp"
@@ -533,6 +534,14 @@ class Controller : public ControllerNode<rclcpp::Node> {
         "word", rclcpp::QoS(10), rclcpp::QoS(10).transient_local(),
         [this](const auto& message) { on_word(message); });
 
+    const std::string space = get_namespace();
+    const std::string outside = names_outside(space, {
+        {"/scan", get_node_topics_interface()->resolve_topic_name("/scan")},
+    });
+    if (!outside.empty()) {
+      RCLCPP_WARN(get_logger(), "the namespace %s does not apply to %s: see \042absoluteNames\042 in the configuration",
+          space.c_str(), outside.c_str());
+    }
     warn_of_no_stop();
     start(period);
   }

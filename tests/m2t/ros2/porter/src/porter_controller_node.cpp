@@ -27,6 +27,7 @@
 #include <std_srvs/srv/trigger.hpp>
 
 #include "porter_controller/definition.hpp"
+#include "robosc/absolute_names.hpp"
 #include "robosc/block_reasons.hpp"
 #include "robosc/component_status.hpp"
 #include "robosc/data.hpp"
@@ -638,6 +639,16 @@ class Controller : public ControllerNode<rclcpp::Node> {
         "/stop", rclcpp::QoS(10), rclcpp::QoS(10).transient_local(),
         [this](const auto& message) { on_stop(message); });
 
+    const std::string space = get_namespace();
+    const std::string outside = names_outside(space, {
+        {"/stop", get_node_topics_interface()->resolve_topic_name("/stop")},
+        {"/gripper/grip", get_node_services_interface()->resolve_service_name("/gripper/grip")},
+        {"/travel", get_node_services_interface()->resolve_service_name("/travel/_action/send_goal")},
+    });
+    if (!outside.empty()) {
+      RCLCPP_WARN(get_logger(), "the namespace %s does not apply to %s: see \042absoluteNames\042 in the configuration",
+          space.c_str(), outside.c_str());
+    }
     start(period);
   }
 
