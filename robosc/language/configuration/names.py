@@ -21,7 +21,9 @@ def configured_names(graph: rosgraph.RosGraph | None, configuration: Configurati
     named: list[tuple[Any, str]] = [
         (topic, "topic") for topic in (*graph.subscriptions, *graph.publishers, *graph.model.plants)
     ]
-    named += [(client, "identifier") for client in (*graph.serviceClients, *graph.actionClients)]
+    services = (*graph.serviceClients, *graph.serviceServers)
+    actions = (*graph.actionClients, *graph.actionServers)
+    named += [(user, "identifier") for user in (*services, *actions)]
     names = [(element, attribute, getattr(element, attribute)) for element, attribute in named]
     for element, attribute, name in names:
         setattr(element, attribute, name and name.removeprefix("/"))
@@ -40,6 +42,6 @@ def absolute_names(graph: rosgraph.RosGraph) -> tuple[list[str], list[str], list
 
     return (
         absolute([*(end.topic for end in graph.subscriptions), *(end.topic for end in graph.publishers)]),
-        absolute(client.identifier for client in graph.serviceClients),
-        absolute(client.identifier for client in graph.actionClients),
+        absolute(user.identifier for user in (*graph.serviceClients, *graph.serviceServers)),
+        absolute(user.identifier for user in (*graph.actionClients, *graph.actionServers)),
     )
