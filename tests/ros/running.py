@@ -94,7 +94,8 @@ def ros2_modules(ros: Ros, folder: Path, package: str = "") -> str:
     """
     modules = folder / "modules"
     if not modules.exists():
-        command = [ros.python, "-m", "robosc", "interfaces", "build", HERE / "interfaces" / "ros2" / package, "-o", modules]
+        source = HERE / "interfaces" / "ros2" / package
+        command = [ros.python, "-m", "robosc", "interfaces", "build", source, "-o", modules]
         done = subprocess.run(command, env=ros.environment, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-4000:]
     return str(modules)
