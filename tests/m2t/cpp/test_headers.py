@@ -119,7 +119,7 @@ def test_compiles_alone(header: str, request: pytest.FixtureRequest) -> None:
     if found is None:
         ros2 = "rclcpp, which no wheel has" if includes_rclcpp(header) else "headers of wheels: see run-tests"
         pytest.skip(f"{header} needs {ros2 if header.startswith('robosc_ros2') else 'roscpp and actionlib'}")
-    compiler = ["g++", "-std=c++17", *WARNINGS]
+    compiler = ["g++", f"-std=c++{20 if header.startswith('robosc_ros2') else 17}", *WARNINGS]
     includes = re.findall(r"^#include <(.*)>", (INCLUDE / header).read_text(encoding="utf-8"), re.MULTILINE)
     if {"ros/node_handle.h", "ros/ros.h"} & {*includes}:
         # Its own includes are compiled once for all such headers: they take longer than all these headers.
