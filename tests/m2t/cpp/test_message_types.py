@@ -52,7 +52,10 @@ def unknown_names(source: Path, prefix: str, include: list[Path]) -> list[str]:
     done = subprocess.run([*command, source], capture_output=True, text=True, check=False)
     assert "undeclared identifier 'rclcpp'" in done.stderr
     kinds = r"'(\S+)' file not found", r"no member named '(\w+)' in '\w+::(?:msg|srv|action)::"
-    kinds += r"no member named '(\w+)' in namespace '\w+_(?:msgs|srvs)", rf"use of undeclared identifier '({prefix}_\w+)'"
+    kinds += (
+        r"no member named '(\w+)' in namespace '\w+_(?:msgs|srvs)",
+        rf"use of undeclared identifier '({prefix}_\w+)'",
+    )
     kinds += rf"unknown type name '({prefix}_\w+)'", rf"no member named '(\w+)' in '{prefix}_supervisor"
     return [name for kind in kinds for name in re.findall(f"error: {kind}", done.stderr)]
 
