@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from tests.ros.installations import find_ros1
-from tests.ros.running import Runner, run_ros2
+from tests.ros.running import Runner, run_kilted, run_ros2
 from tests.ros.workspaces import Workspace, middleware, ros1_build, ros1_workspace, ros2_workspace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from contextlib import AbstractContextManager
 
-__all__ = ["ros1_build", "ros1_workspace", "ros2_workspace", "run_ros2"]
+__all__ = ["ros1_build", "ros1_workspace", "ros2_workspace", "run_kilted", "run_ros2"]
 
 HERE = Path(__file__).parent
 #: Fixtures that run nodes for several tests, and names of the parameters that select the kind of node.
@@ -39,6 +39,8 @@ RUNS = (
 KINDS = ("nodes", "layers", "controller", "kind", "name")
 #: Compiled nodes of each ROS version, and nodes that `robosc run` starts from models over ROS 2.
 NODES = ("ros1", "ros2", "run-ros2")
+#: Nodes that `robosc run` starts over another version of ROS 2, and the modules of the tests that also run these.
+KILTED, ON_KILTED = "run-kilted", ("test_courier", "test_latched")
 SIMULATOR = HERE.parents[1] / "examples" / "simulator"
 
 
@@ -84,7 +86,8 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     if "workspace" in metafunc.fixturenames:
         metafunc.parametrize("workspace", ["ros1", "ros2"], indirect=True, scope="session")
     if "nodes" in metafunc.fixturenames:
-        metafunc.parametrize("nodes", NODES, indirect=True, scope="session")
+        kinds = [*NODES, *([KILTED] if metafunc.module.__name__.endswith(ON_KILTED) else [])]
+        metafunc.parametrize("nodes", kinds, indirect=True, scope="session")
     if "layers" in metafunc.fixturenames:
         metafunc.parametrize("layers", [kind for kind in NODES if kind != "ros1"], indirect=True, scope="session")
 
@@ -200,8 +203,9 @@ def layers(request: pytest.FixtureRequest) -> Workspace | Runner:
 
 
 def nodes_of(request: pytest.FixtureRequest, kind: str) -> Workspace | Runner:
-    """Return the nodes of one of the kinds `NODES`."""
-    made: Workspace | Runner = request.getfixturevalue("run_ros2" if kind == "run-ros2" else f"{kind}_workspace")
+    """Return the nodes of one of the kinds `NODES`, or of `KILTED`."""
+    fixture = kind.replace("-", "_") if kind.startswith("run-") else f"{kind}_workspace"
+    made: Workspace | Runner = request.getfixturevalue(fixture)
     return made
 
 

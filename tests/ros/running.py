@@ -68,14 +68,14 @@ class Runner:
         return {**self.ros.environment, "PYTHONPATH": path, "PYTHONDONTWRITEBYTECODE": "1", "PYTHONUNBUFFERED": "1"}
 
 
-def find_rclpy() -> Found:
-    """Find ROS 2 for `robosc run`: a Python with rclpy and robosc, such as the one that `run-tests` creates."""
+def find_rclpy(environments: Sequence[Path] = (PROJECT / ".venv-ros2", Path(sys.prefix))) -> Found:
+    """Find ROS 2 for `robosc run`: the first Python with rclpy and robosc, such as those that `run-tests` creates."""
     found = Found()
     # These wheels must not use the libraries of another installation, nor its mark that they are initialized.
     others = ("AMENT_PREFIX_PATH", "LD_LIBRARY_PATH", "PYTHONPATH", "_ROS_WHEELS_BOOTSTRAP_COMPLETE")
     environment = {name: value for name, value in os.environ.items() if name not in others}
     environment |= {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", "RMW_IMPLEMENTATION": "rmw_fastrtps_cpp"}
-    for python in (PROJECT / ".venv-ros2" / "bin" / "python", Path(sys.executable)):
+    for python in (folder / "bin" / "python" for folder in environments):
         command = [python, "-c", "import rclpy, robosc"]
         if (
             python.exists()
@@ -87,11 +87,15 @@ def find_rclpy() -> Found:
     return found
 
 
-def ros2_modules(ros: Ros, folder: Path) -> str:
-    """Return the folder of the Python modules of `interfaces/ros2`; build them if they do not exist."""
+def ros2_modules(ros: Ros, folder: Path, package: str = "") -> str:
+    """Return the folder of the Python modules of `interfaces/ros2`; build them if they do not exist.
+
+    `package` is the only package to build.
+    """
     modules = folder / "modules"
     if not modules.exists():
-        command = [ros.python, "-m", "robosc", "interfaces", "build", HERE / "interfaces" / "ros2", "-o", modules]
+        source = HERE / "interfaces" / "ros2" / package
+        command = [ros.python, "-m", "robosc", "interfaces", "build", source, "-o", modules]
         done = subprocess.run(command, env=ros.environment, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-4000:]
     return str(modules)
@@ -103,3 +107,11 @@ def run_ros2(shared_folder: Path) -> Runner:
     ros = found_or_skipped("ros2-run", find_rclpy())
     folder = Path(os.environ.get("ROBOSC_ROS2_INTERFACES") or shared_folder / "interfaces-ros2")
     return Runner(ros, Path(made_once(shared_folder, "run-ros2", lambda: ros2_modules(ros, folder))))
+
+
+@pytest.fixture(scope="session")
+def run_kilted(shared_folder: Path) -> Runner:
+    """`robosc run` over ROS 2 Kilted with `nav2_msgs`."""
+    ros = found_or_skipped("ros2-kilted", find_rclpy([PROJECT / ".venv-ros2-kilted"]))
+    folder = shared_folder / "interfaces-kilted"
+    return Runner(ros, Path(made_once(shared_folder, "run-kilted", lambda: ros2_modules(ros, folder, "nav2_msgs"))))

@@ -96,12 +96,21 @@ def test_catkin_knows_the_tests(ros1_workspace: Workspace) -> None:
 
 @pytest.mark.parametrize("package", MODELS)
 def test_the_node_run_over_ros_2_follows_its_trace(run_ros2: Runner, package: str, tmp_path: Path) -> None:
+    play_model(run_ros2, package, tmp_path)
+
+
+def test_the_node_run_over_kilted_follows_its_trace(run_kilted: Runner, tmp_path: Path) -> None:
+    play_model(run_kilted, "porter_controller", tmp_path)
+
+
+def play_model(runner: Runner, package: str, folder: Path) -> None:
+    """Play the trace of a package against the node that `robosc run` starts."""
     model, configuration = MODELS[package]
     settings = ["--config", str(configuration)] if configuration else []
-    robosc = [run_ros2.ros.python, "-m", "robosc", "transform", str(model), "--to", "ros2", "--with-tests", *settings]
-    subprocess.run([*robosc, "-o", tmp_path], check=True, capture_output=True, env=run_ros2.environment())
-    test = tmp_path / "ros2" / package / "test"
-    play(run_ros2, run_ros2.command(model, *parameters(test, tmp_path), configuration=configuration), test, tmp_path)
+    robosc = [runner.ros.python, "-m", "robosc", "transform", str(model), "--to", "ros2", "--with-tests", *settings]
+    subprocess.run([*robosc, "-o", folder], check=True, capture_output=True, env=runner.environment())
+    test = folder / "ros2" / package / "test"
+    play(runner, runner.command(model, *parameters(test, folder), configuration=configuration), test, folder)
 
 
 @pytest.mark.parametrize("package", MODELS)

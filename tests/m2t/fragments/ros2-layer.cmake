@@ -29,7 +29,7 @@ add_library(usher_layer_component SHARED
 target_include_directories(usher_layer_component PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/include
   ${CMAKE_CURRENT_LIST_DIR}/include/usher_layer)
-target_compile_features(usher_layer_component PRIVATE cxx_std_17)
+target_compile_features(usher_layer_component PRIVATE cxx_std_20)
 if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
   target_compile_options(usher_layer_engine PRIVATE -Wall -Wextra -Wpedantic)
   target_compile_options(usher_layer_component PRIVATE -Wall -Wextra -Wpedantic)

@@ -31,7 +31,7 @@ add_library(porter_controller_component SHARED
 target_include_directories(porter_controller_component PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/include
   ${CMAKE_CURRENT_LIST_DIR}/include/porter_controller)
-target_compile_features(porter_controller_component PRIVATE cxx_std_17)
+target_compile_features(porter_controller_component PRIVATE cxx_std_20)
 if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
   target_compile_options(porter_controller_engine PRIVATE -Wall -Wextra -Wpedantic)
   target_compile_options(porter_controller_component PRIVATE -Wall -Wextra -Wpedantic)

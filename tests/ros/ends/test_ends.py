@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from tests.ros.conftest import nodes_of
+from tests.ros.conftest import KILTED, nodes_of
 from tests.ros.ends.base import CANCELED, ERROR, LATE, RESPONSE, TRIGGER, WAIT_MS, Base, Drive, under_way
 from tests.ros.processes import PATIENCE
 
@@ -31,6 +31,7 @@ NODES = [
     for layer in (False, True)
     if not (kind == "ros1" and layer)
 ]
+NODES.append(pytest.param(KILTED, False, id=KILTED, marks=pytest.mark.matrix))
 pytestmark = pytest.mark.parametrize(("kind", "base"), NODES, indirect=["base"])
 
 

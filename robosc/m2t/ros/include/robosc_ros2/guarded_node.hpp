@@ -2,6 +2,8 @@
 #ifndef ROBOSC_ROS2_GUARDED_NODE_HPP_
 #define ROBOSC_ROS2_GUARDED_NODE_HPP_
 
+#include <string>
+
 #include <rclcpp/rclcpp.hpp>
 
 #include "robosc/callback_guard.hpp"
@@ -14,6 +16,13 @@ inline namespace ROBOSC_VERSION {
 /// A node without callbacks after its end.
 template <typename Node>
 class GuardedNode : public Node {
+ public:
+  /// The name of the node with its namespace. Managed nodes of Humble have no such function.
+  std::string get_fully_qualified_name() const {
+    const std::string space = this->get_namespace();
+    return (space == "/" ? "" : space) + "/" + this->get_name();
+  }
+
  protected:
   using Node::Node;
 

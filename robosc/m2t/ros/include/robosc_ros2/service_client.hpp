@@ -19,6 +19,16 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
+/// Creates a client. In Humble, its quality of service is a structure of the middleware.
+template <typename Type, typename Node>
+auto create_client(Node& node, const std::string& name, const rclcpp::QoS& quality) {
+  if constexpr (requires { node.template create_client<Type>(name, quality); }) {
+    return node.template create_client<Type>(name, quality);
+  } else {
+    return node.template create_client<Type>(name, quality.get_rmw_qos_profile());
+  }
+}
+
 /// A client of one service. The node's executor calls the handlers.
 template <typename Type>
 class ServiceClient final : public CallClient<Countdown, typename Type::Response> {
@@ -32,7 +42,7 @@ class ServiceClient final : public CallClient<Countdown, typename Type::Response
                 std::chrono::milliseconds timeout, typename Base::Handlers handlers)
       : Base(timeout, std::move(handlers), node, guard),
         guard_(guard),
-        client_(node.template create_client<Type>(name, quality)),
+        client_(create_client<Type>(node, name, quality)),
         search_(node, guard, std::chrono::milliseconds(20), [this] { send(); }) {}
 
   /// Calls the service. Gives up an earlier call that has not ended.
