@@ -42,8 +42,8 @@ class MessageQueues:
     """All queues of a node, handled in rounds of turns, and the executor that does all other work.
 
     `spin_once` lets the executor handle one item, and waits for it at most the given seconds. An executor that has a
-    queue of events also has one for each message that was taken here or dropped. Such an event is without effect, but
-    other work waits behind it. `post` adds a call to that queue; it is None for an executor without one.
+    queue of events also has one for each message that was taken here or dropped. An event of a taken message is without
+    effect, but other work waits behind it. `post` adds a call to that queue; it is None for an executor without one.
     """
 
     def __init__(
