@@ -1,7 +1,8 @@
 """Measure reaction times and costs of nodes over the installed ROS; write `docs/performance.md`.
 
-    python benchmarks/reaction.py [--ros 1] [--nodes compiled] [--parts stop obstacle costs watched] [--stops 1000]
-                                  [--obstacles 200] [--seconds 300] [--rounds 9] [--keep FOLDER]
+    python benchmarks/reaction.py [--ros 1] [--nodes compiled] [--parts stop obstacle fast costs watched]
+                                  [--stops 1000] [--obstacles 200] [--fast 200] [--seconds 300]
+                                  [--rounds 9] [--keep FOLDER]
 
 Without options: compiled nodes of ROS 1 and ROS 2, and `robosc run`, as far as they are installed. Each of the three
 takes fourteen minutes, six of them for the costs; compiled nodes are built before. The measurements are stored in
@@ -29,13 +30,15 @@ from benchmarks.performance_page import KINDS, page, percentiles  # noqa: E402
 from benchmarks.timed_packages import timed_packages  # noqa: E402
 from benchmarks.watched import watched  # noqa: E402
 from tests.ros.installations import find_ros1, find_ros2  # noqa: E402
-from tests.ros.reactions import reactions  # noqa: E402
+from tests.ros.reactions import SENSORS_HZ, reactions  # noqa: E402
 from tests.ros.running import Runner, find_rclpy, ros2_modules  # noqa: E402
 from tests.ros.workspaces import Workspace, build  # noqa: E402
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+#: Messages per second of each of the two sensors, in the part `fast`.
+RATES = (100, 400, 1000)
 KEPT = ROOT / "benchmarks" / "performance.json"
 PAGE = ROOT / "docs" / "performance.md"
 INTERFACES = ROOT / "tests" / "ros" / "interfaces"
@@ -80,6 +83,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--parts", nargs="+", choices=list(PARTS), default=list(PARTS))
     parser.add_argument("--stops", type=int, default=1000)
     parser.add_argument("--obstacles", type=int, default=200)
+    parser.add_argument("--fast", type=int, default=200, help="how many stops are measured at each rate")
     parser.add_argument("--seconds", type=float, default=300, help="how long the costs are measured")
     parser.add_argument("--rounds", type=int, default=9, help="how often it is measured what a look costs")
     parser.add_argument("--keep", type=Path, help="a folder for what is built")
@@ -109,8 +113,15 @@ def _obstacles(nodes: Workspace | Runner, folder: Path, options: argparse.Namesp
     return _reaction(nodes, folder, "obstacle", options.obstacles)
 
 
-def _reaction(nodes: Workspace | Runner, folder: Path, reason: str, times: int) -> dict[str, Any]:
-    found, echoes = reactions(nodes, folder, reason, times)
+def _fast(nodes: Workspace | Runner, folder: Path, options: argparse.Namespace) -> dict[str, Any]:
+    folder.mkdir()
+    return {str(hz): _reaction(nodes, folder / str(hz), "stop", options.fast, hz) for hz in RATES}
+
+
+def _reaction(
+    nodes: Workspace | Runner, folder: Path, reason: str, times: int, hz: float = SENSORS_HZ
+) -> dict[str, Any]:
+    found, echoes = reactions(nodes, folder, reason, times, hz=hz)
     return {"times": times, "reaction": percentiles(found), "echo": percentiles(echoes)}
 
 
@@ -140,6 +151,7 @@ def _watched(nodes: Workspace | Runner, folder: Path, options: argparse.Namespac
 PARTS: dict[str, Callable[[Any, Path, argparse.Namespace], dict[str, Any]]] = {
     "stop": _stops,
     "obstacle": _obstacles,
+    "fast": _fast,
     "costs": _costs,
     "watched": _watched,
 }

@@ -35,6 +35,7 @@ class Ros1(Connection):
         self._goals = {}
         self._servers = []
         self._feedback = {}
+        self._results = {}
         for action, kind in simulation.serves.items():
             server = actionlib.ActionServer(
                 action, _class(kind + "Action"), self._starter(action), self._canceller(action), auto_start=False
@@ -42,6 +43,7 @@ class Ros1(Connection):
             server.start()
             self._servers.append(server)
             self._feedback[action] = _class(kind + "Feedback")
+            self._results[action] = _class(kind + "Result")
 
     def listeners(self, topic):
         """Return the number of listeners of a topic."""
@@ -62,12 +64,14 @@ class Ros1(Connection):
         handle = self._goals[news.goal]
         if news.what == "feedback":
             handle.publish_feedback(_filled(self._feedback[news.action](), news.data))
-        elif news.what == "succeeded":
-            handle.set_succeeded()
+            return
+        result = _filled(self._results[news.action](), news.data)
+        if news.what == "succeeded":
+            handle.set_succeeded(result)
         elif news.what == "canceled":
-            handle.set_canceled()
+            handle.set_canceled(result)
         else:
-            handle.set_aborted()
+            handle.set_aborted(result)
 
     def spin(self, seconds):
         """Wait while the threads of rospy work."""

@@ -65,7 +65,7 @@ class Ros2(Connection):
             goal.handle.publish_feedback(_filled(goal.kind.Feedback(), news.data))
         else:
             # Not earlier: rclpy would wait for the end of a goal in a busy loop, before all other work.
-            goal.handle.execute(lambda _: goal.ended(news.what))
+            goal.handle.execute(lambda _: goal.ended(news.what, news.data))
 
     def spin(self, seconds):
         """Let rclpy handle one item."""
@@ -143,10 +143,10 @@ class _Goal:
         self.handle = handle
         self.kind = kind
 
-    def ended(self, how):
+    def ended(self, how, data):
         """End the goal and return its result."""
         {"succeeded": self.handle.succeed, "canceled": self.handle.canceled, "aborted": self.handle.abort}[how]()
-        return self.kind.Result()
+        return _filled(self.kind.Result(), data)
 
 
 def _class(kind, folder="msg"):

@@ -10,7 +10,7 @@ from .field import Boom, Driver, Radio, Receiver, Remote
 from .geometry import Disc, Pose, Segment, box, path, turned
 from .navigation import Navigation
 from .scenario import Scenario, stop_and_continue
-from .warehouse import AisleManager, Battery, Bumpers, Docking, Lift, SafetyLidars, WarehouseNavigation
+from .warehouse import AisleManager, Battery, Bumpers, Docking, Lift, SafetyLidars, Undocking, WarehouseNavigation
 from .world import Area, Ball, Person, Sight, World
 
 LINE_PIXELS, VIEW_PIXELS = 1.0, 2.0
@@ -387,7 +387,7 @@ class WarehouseRobot(Scenario):
         del world, noise
         docking = Docking(self.start.x)
         navigation = WarehouseNavigation(self.walls(), self.start)
-        return [Bumpers(), Battery(docking, 0.15), Lift(), AisleManager(), docking, navigation]
+        return [Bumpers(), Battery(docking, 0.15), Lift(), AisleManager(), docking, Undocking(docking), navigation]
 
     def script(self, simulation):
         """Send two orders. The second ends half way because the battery is low."""

@@ -168,14 +168,63 @@ class AisleManager(Server):
                 self._news.append(words)
 
 
-class Docking(Server):
-    """Docking: drives the robot off its dock, and back into it from before it. `refusals`: how often it will not dock.
+class DockServer(Device):
+    """One of the two action servers of Nav2's docking. A movement follows the x axis, to the east or to the west.
 
-    Both movements follow the x axis: the robot stands before its dock at the map's origin.
+    The robot stands before its dock at the map's origin. A subclass moves the robot in `step`, until that returns True.
     """
 
-    answers = {"/dock": TRIGGER, "/undock": TRIGGER}  # noqa: RUF012
     speed, turn_speed, precision = 0.3, 1.0, math.radians(1)
+    words = ""
+
+    def __init__(self):
+        self.events = []
+        self._goal = None
+        self._news = []
+
+    def accept(self, world, goal, data):
+        """Begin a movement. Return whether that is possible."""
+        del world, data
+        if self._goal is not None:
+            return False
+        self._goal = goal
+        return True
+
+    def cancel(self, world, goal):
+        """End a movement. Return whether it was under way."""
+        if goal != self._goal:
+            return False
+        self.end(world, "canceled", "the robot stops at its dock")
+        return True
+
+    def act(self, world):
+        """Continue the movement."""
+        if self._goal is None:
+            return
+        off = turned(-world.pose.heading)
+        if abs(off) > self.precision:
+            world.drive.command(0.0, max(-self.turn_speed, min(self.turn_speed, 4 * off)))
+        elif self.step(world):
+            self.end(world, "succeeded", self.words)
+
+    def end(self, world, how, words):
+        """End the goal. The picture shows the words."""
+        world.drive.command(0.0, 0.0)
+        self.events.append((self._goal, how, {"success": how == "succeeded"}))
+        self._goal = None
+        self._news.append(words)
+
+    def news(self):
+        """Return descriptions of the ends of movements."""
+        news, self._news = self._news, []
+        return news
+
+
+class Docking(DockServer):
+    """Drives the robot into its dock. `refusals`: how often it will not."""
+
+    serves = {"/dock_robot": "nav2_msgs/DockRobot"}  # noqa: RUF012
+    words = "in the dock"
 
     def __init__(self, place):
         """Create the server. `place` is the dock's position on the x axis."""
@@ -183,34 +232,41 @@ class Docking(Server):
         self.docked = True
         self.refusals = 0
         self._place = place
-        self._call = None
 
-    def ask(self, world, service, call):
-        """Begin a movement."""
-        del world
-        if service == "/dock" and self.refusals:
+    def accept(self, world, goal, data):
+        """Begin a movement. Return whether that is possible. The only dock is `home`."""
+        if data["dock_id"] != "home" or not super().accept(world, goal, data):
+            return False
+        if self.refusals:
             self.refusals -= 1
-            self.answer(service, call, False, "the dock refuses")
-        else:
-            self._call = service, call
-            self.docked = False
+            self.end(world, "aborted", "the dock refuses")
+        return True
 
-    def act(self, world):
-        """Continue the movement."""
-        if self._call is None:
-            return
-        service, call = self._call
-        off = turned(-world.pose.heading)
-        if abs(off) > self.precision:
-            world.drive.command(0.0, max(-self.turn_speed, min(self.turn_speed, 4 * off)))
-        elif service == "/undock" and world.pose.x < 0.0:
-            world.drive.command(self.speed, 0.0)
-        elif service == "/dock" and world.pose.x > self._place:
+    def step(self, world):
+        """Drive backwards. Return whether the robot is in the dock."""
+        if world.pose.x > self._place:
             world.drive.command(-self.speed, 0.0)
         else:
-            world.drive.command(0.0, 0.0)
-            self._call, self.docked = None, service == "/dock"
-            self.answer(service, call, True, "in the dock" if self.docked else "off the dock")
+            self.docked = True
+        return self.docked
+
+
+class Undocking(DockServer):
+    """Drives the robot off its dock."""
+
+    serves = {"/undock_robot": "nav2_msgs/UndockRobot"}  # noqa: RUF012
+    words = "off the dock"
+
+    def __init__(self, docking):
+        super().__init__()
+        self._docking = docking
+
+    def step(self, world):
+        """Drive ahead. Return whether the robot is off the dock."""
+        self._docking.docked = False
+        if world.pose.x < 0.0:
+            world.drive.command(self.speed, 0.0)
+        return world.pose.x >= 0.0
 
 
 class WarehouseNavigation(Navigation):

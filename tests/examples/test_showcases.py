@@ -63,7 +63,7 @@ def shelved() -> list[str]:
         *(heard(f"{name}_touched", False) for name in ("Front", "Rear", "Left", "Right")),
         heard("charge", {"percentage": 0.8}),
         heard("order"),
-        f"service_undock.u_response{DONE}",
+        f"action_undock.u_response{DONE}",
         f"service_enter.u_response{DONE}",
     ]
 
@@ -76,7 +76,7 @@ def test_the_warehouse_robot_serves_an_order() -> None:
     lines = [*shelved(), *scans(), "action_navigate.u_response"]
     served = [f"service_leave.u_response{DONE}", f"service_raise.u_response{DONE}", heard("served")]
     back = [f"service_lower.u_response{DONE}", f"service_enter.u_response{DONE}", "action_navigate.u_response"]
-    home = [f"service_leave.u_response{DONE}", f"service_dock.u_response{DONE}"]
+    home = [f"service_leave.u_response{DONE}", f"action_dock.u_response{DONE}"]
     sent = work(play("warehouse_robot", *lines, *served, *back, *home))
     assert sent[:10] == [[], [], [], [], [], ["undock"], ["enter"], [], [], ["navigate"]]
     assert sent[10:14] == [["leave"], ["raise"], [], ["lower"]]
@@ -117,10 +117,21 @@ def test_the_warehouse_robot_asks_again_where_nobody_answers() -> None:
     assert work(play("warehouse_robot", *lines))[-3:] == [["leave"], ["leave"], ["raise"]]
 
 
+def test_the_warehouse_robot_stops_at_its_dock_and_begins_again() -> None:
+    leaving, moves_on = shelved()[:6], [RELEASED, GO_ON]
+    sent = work(play("warehouse_robot", *leaving, PRESSED, "action_undock.u_canceled", *moves_on))
+    assert sent[-5:] == [["undock"], ["cancel undock"], [], [], ["undock"]]
+    under_way = [*shelved(), *scans(), "action_navigate.u_response", f"service_leave.u_response{DONE}"]
+    home = [f"service_raise.u_response{REFUSED}", f"service_lower.u_response{DONE}", f"service_enter.u_response{DONE}"]
+    back = [*under_way, *home, *scans(), "action_navigate.u_response", f"service_leave.u_response{DONE}"]
+    sent = work(play("warehouse_robot", *back, PRESSED, "action_dock.u_canceled", *moves_on))
+    assert sent[-4:] == [["cancel dock"], [], [], ["dock"]]
+
+
 def test_the_warehouse_robot_asks_for_its_dock_three_times() -> None:
     under_way = [*shelved(), *scans(), "action_navigate.u_response", f"service_leave.u_response{DONE}"]
     home = [f"service_raise.u_response{REFUSED}", f"service_lower.u_response{DONE}", f"service_enter.u_response{DONE}"]
-    refused = f"service_dock.u_response{REFUSED}"
+    refused = f"action_dock.u_response{REFUSED}"
     docking = [
         refused,
         "wait 4.9",

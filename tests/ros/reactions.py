@@ -29,16 +29,23 @@ def one_process(nodes: Workspace | Runner, package: str, *parameters: str) -> li
 
 
 def reactions(
-    nodes: Workspace | Runner, folder: Path, reason: str, times: int, parameters: Sequence[str] = ()
+    nodes: Workspace | Runner,
+    folder: Path,
+    reason: str,
+    times: int,
+    parameters: Sequence[str] = (),
+    *,
+    hz: float = SENSORS_HZ,
 ) -> tuple[list[float], list[float]]:
     """Return the seconds from an input (`stop` or `obstacle`) to the first zero of the robot, at random moments.
 
-    Also returns round trips of an echo, measured in between. The sensors publish at 30 Hz. `folder` must not exist.
+    Also returns round trips of an echo, measured in between. The sensors publish at 30 Hz; for a `stop`, at `hz`.
+    `folder` must not exist.
     """
     with middleware(nodes, folder) as processes:
         processes.start("node", one_process(nodes, PACKAGE, *parameters))
         if reason == "stop":
-            processes.start("sensors", [nodes.ros.python, HERE / "sensors.py", str(nodes.ros.version), str(SENSORS_HZ)])
+            processes.start("sensors", [nodes.ros.python, HERE / "sensors.py", str(nodes.ros.version), str(hz)])
         return _measured(nodes, folder, processes, reason, times)
 
 

@@ -6,6 +6,7 @@ With `--going`, also publish a released button and repeated presses of continue.
 """
 
 import sys
+import time
 
 from reaction_times import CLEAR
 from topics import connect
@@ -21,13 +22,15 @@ def main(version, hz, *options):
     if options:
         button = topics.publisher("/emergency_stop", "std_msgs/Bool")
         go_on = topics.publisher("/continue", "std_msgs/Empty")
+    due = time.monotonic()
     while True:
         if options:
             button(data=False)
             go_on()
         scan(**CLEAR)
         correct(data=10.0)
-        topics.receive(1 / float(hz))
+        due = max(due + 1 / float(hz), time.monotonic())
+        topics.receive(due - time.monotonic())
 
 
 if __name__ == "__main__":

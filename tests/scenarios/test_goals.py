@@ -152,7 +152,7 @@ def test_the_layer_blocks_steps_of_a_controller_that_knows_no_danger() -> None:
 @pytest.mark.slow
 def test_the_dock_is_asked_again_after_ever_longer_pauses() -> None:
     run = run_of("warehouse_robot")
-    asked = [entry["time"] for entry in run.log if entry["event"] == "service_dock.c_trigger"]
+    asked = [entry["time"] for entry in run.log if entry["event"] == "action_dock.c_trigger"]
     first, second, third, _ = asked
     assert (second - first, third - second) == pytest.approx((5.0, 30.0), abs=0.2)
 

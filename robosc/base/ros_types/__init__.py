@@ -26,8 +26,8 @@ __all__ = ["DefinitionError", "Fields", "RosDistribution", "RosTypes", "Section"
 
 REPAIR = "correct it: until then, its fields are not checked"
 MAKE_KNOWN = (
-    "add the folder of its package with --interface-path or ROBOSC_INTERFACE_PATH; until then, its fields are"
-    " not checked"
+    "source the setup of the ROS installation or workspace that has its package, or name a folder above the package"
+    " with --interface-path or ROBOSC_INTERFACE_PATH; until then, its fields are not checked"
 )
 #: Hint for the data of a service or action in a place that can only name messages.
 OWN_OBJECT = "for the data of a service or action, declare an object with the fields that you use and an enum over it"
@@ -35,6 +35,9 @@ OWN_OBJECT = "for the data of a service or action, declare an object with the fi
 _DATA = "data"
 #: Shipped definitions. Types that are the same in both ROS versions are in the folder `both`.
 _SHIPPED = locate("base/ros_types/definitions")
+#: Folder of the installations on Ubuntu, and the folder in `share` that shows the version of each.
+_INSTALLATIONS = Path("/opt/ros")
+_MARKS = {"ROS 2": "ament_index", "ROS 1": "catkin"}
 #: Known packages that ROS 1 does not have. An unknown one, such as `tf2_msgs`, may still exist there.
 _NOT_IN_ROS_1 = frozenset(
     [
@@ -145,13 +148,12 @@ class RosTypes:
     def __init__(self, paths: Iterable[str | PathLike[str]] = ()) -> None:
         """Search folders of packages below `paths` before all others."""
         folders = [Path(path) for path in paths] + _environment("ROBOSC_INTERFACE_PATH")
-        installed = {
+        installed: dict[str, list[Share]] = {
             "ROS 2": [Share(prefix / "share") for prefix in _environment("AMENT_PREFIX_PATH")],
-            "ROS 1": [
-                *(Workspace(folder, "ROS 1") for folder in _environment("ROS_PACKAGE_PATH")),
-                Share(Path("/usr/share")),  # the location on Debian
-            ],
+            "ROS 1": [Workspace(folder, "ROS 1") for folder in _environment("ROS_PACKAGE_PATH")],
         }
+        installed = {ros: shares or _not_sourced(ros) for ros, shares in installed.items()}
+        installed["ROS 1"].append(Share(Path("/usr/share")))  # the location on Debian
         #: ROS 2, then ROS 1.
         self._workspaces = {ros: [Workspace(folder, ros) for folder in folders] for ros in installed}
         self.distributions = [RosDistribution(ros, self._workspaces[ros], shares) for ros, shares in installed.items()]
@@ -225,18 +227,26 @@ class RosTypes:
             if other.kind != kind and any(known.defines(package, name, other) for known in self.distributions):
                 message = f"{package}/{name} is of kind {other.kind}, expected a type of kind {kind}"
                 return message, f"name a type of kind {kind}", None
+        packages = {package_name for known in self.distributions for package_name in known.packages()}
+        having = sorted(other for other in packages if name in self._names(other, kind))
         if not any(known.has_package(package) for known in self.distributions):
-            packages = {package_name for known in self.distributions for package_name in known.packages()}
-            having = sorted(other for other in packages if name in self._names(other, kind))
             close = get_close_matches(package, having, n=1, cutoff=0.8)
             make_known = self._make_known()
             hint = f"did you mean `{close[0]}`? Else {make_known}" if close else make_known
             return f"the package `{package}` is unknown", hint, (close[0], name) if close else None
+        message = f"no {kind} type `{name}` of the package `{package}` is known"
+        if len(having) == 1:
+            return message, f"did you mean `{having[0]}/{name}`?", (having[0], name)
         close = get_close_matches(name, self._names(package, kind), n=1)
         hint = f"did you mean `{close[0]}`?" if close else self._make_known()
-        meant = (package, close[0]) if close else None
-        return f"no {kind} type `{name}` of the package `{package}` is known", hint, meant
+        return message, hint, (package, close[0]) if close else None
 
 
 def _environment(variable: str) -> list[Path]:
     return [Path(folder) for folder in os.environ.get(variable, "").split(os.pathsep) if folder]
+
+
+def _not_sourced(ros: str) -> list[Share]:
+    """Return the packages of the installations whose setup nobody has sourced, the newest first."""
+    shares = [folder / "share" for folder in sorted(_INSTALLATIONS.glob("*"), reverse=True)]
+    return [Share(share) for share in shares if (share / _MARKS[ros]).is_dir()]

@@ -470,7 +470,7 @@ class _JsonData(NodeData):
         for _, part in [inner for rule in conversion.rules for inner in tree(rule.condition)]:
             if isinstance(part, rosgraph.WireAccess) and part.quantifier is None and not operands(part):
                 with suppress(UnreadableError):
-                    self.leaf(self._reach(part, data), part.type)
+                    self.leaf(self._reach(part)(data), part.type)
         return str(self.convert(conversion, data).name)
 
     def convert(self, conversion: rosgraph.Conversion, argument: Any) -> ex.EnumerationLiteral:

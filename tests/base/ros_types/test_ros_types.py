@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from robosc.base import ros_types
 from robosc.base.files.resources import locate
 from robosc.base.ros_types import DefinitionError, RosTypes, Section, folders
 from robosc.base.ros_types.wire import NestedType, Sequence
@@ -17,6 +18,7 @@ SHIPPED = locate("base/ros_types/definitions")
 
 @pytest.fixture(autouse=True)
 def no_installation(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(ros_types, "_INSTALLATIONS", Path("/nowhere"))
     for variable in ("ROBOSC_INTERFACE_PATH", "AMENT_PREFIX_PATH", "ROS_PACKAGE_PATH"):
         monkeypatch.delenv(variable, raising=False)
 
@@ -238,6 +240,27 @@ def test_installations(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert shown(RosTypes(), "a", "A") == [{"two": "int8"}, {"one": "int8"}]
 
 
+def test_installations_whose_setup_was_not_sourced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(ros_types, "_INSTALLATIONS", tmp_path)
+    for name, mark in (("jazzy", "ament_index"), ("lyrical", "ament_index"), ("noetic", "catkin"), ("broken", "lost")):
+        write(tmp_path / name / "share", a__msg__A__msg=f"int8 {name}\n")
+        (tmp_path / name / "share" / mark).mkdir()
+    write(tmp_path / "jazzy" / "share", b__msg__B__msg="int8 x\n")
+    assert shown(RosTypes(), "a", "A") == [{"lyrical": "int8"}, {"noetic": "int8"}]
+    assert shown(RosTypes(), "b", "B") == [{"x": "int8"}, None]
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path / "jazzy"))
+    assert shown(RosTypes(), "a", "A") == [{"jazzy": "int8"}, {"noetic": "int8"}]
+
+
+@pytest.mark.parametrize("place", ["", "src/arm", "install/arm_msgs/share", "install/share", "deep/down/below"])
+@pytest.mark.parametrize("below", [False, True])
+def test_a_package_is_found_in_each_layout(tmp_path: Path, place: str, below: bool) -> None:
+    manifest = "<package><name>arm_msgs</name><depend>rosidl_default_generators</depend></package>"
+    write(tmp_path / place, arm_msgs__msg__Grip__msg="int8 x\n", arm_msgs__package__xml=manifest)
+    types = RosTypes([tmp_path / place / "arm_msgs" if below else tmp_path])
+    assert shown(types, "arm_msgs", "Grip") == [{"x": "int8"}, None]
+
+
 @pytest.mark.parametrize(("package", "name"), [("..", "A"), ("a/../a", "A"), ("a", "../msg/A"), ("/a", "A"), ("", "A")])
 def test_names_are_no_paths(tmp_path: Path, package: str, name: str) -> None:
     folder = write(tmp_path, a__msg__A__msg="int8 x\n") / "a"
@@ -325,6 +348,26 @@ def test_a_package_is_suggested_only_if_it_has_that_type_of_that_kind(
     assert ("did you mean" in hint) == (meant is not None)
 
 
+@pytest.mark.parametrize(
+    ("package", "name", "section", "meant"),
+    [
+        ("geometry_msgs", "LaserScan", Section.MESSAGE, ("sensor_msgs", "LaserScan")),
+        ("nav_msgs", "SpeedLimit", Section.MESSAGE, ("nav2_msgs", "SpeedLimit")),
+        ("std_srvs", "GripperCommand", Section.GOAL, ("control_msgs", "GripperCommand")),
+        ("std_msgs", "Trigger", Section.MESSAGE, None),
+        ("geometry_msgs", "Twits", Section.MESSAGE, ("geometry_msgs", "Twist")),
+        ("geometry_msgs", "Nothing", Section.MESSAGE, None),
+    ],
+)
+def test_another_package_is_suggested_only_if_it_has_that_type(
+    package: str, name: str, section: Section, meant: tuple[str, str] | None
+) -> None:
+    message, hint, found = RosTypes().why_unknown(package, name, section)
+    assert (f"{package}/{name} is of kind" in message) or message.startswith(f"no {section.kind} type `{name}` of")
+    assert found == meant
+    assert ("did you mean" in hint) == (meant is not None)
+
+
 def test_a_folder_that_is_too_large_is_searched_in_part(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(folders, "MOST_FOLDERS", 30)
     for number in range(40):
@@ -336,4 +379,4 @@ def test_a_folder_that_is_too_large_is_searched_in_part(tmp_path: Path, monkeypa
     message, hint, _ = types.why_unknown("p39", "Found", Section.MESSAGE)
     assert message == "the package `p39` is unknown"
     assert hint.endswith("use --interface-path with a folder nearer to the package")
-    assert "add the folder of its package" in RosTypes([tmp_path / "p39"]).why_unknown("q", "X", Section.MESSAGE)[1]
+    assert "name a folder above the package" in RosTypes([tmp_path / "p39"]).why_unknown("q", "X", Section.MESSAGE)[1]

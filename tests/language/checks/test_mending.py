@@ -212,7 +212,7 @@ TOLD = {
     "the repair is in another text": (
         "assign it in",
         "change the arguments",
-        "add the folder of its package",
+        "source the setup of",
         "import only one of these",
         "in library `TankLibrary`",
         "correct it: until then",

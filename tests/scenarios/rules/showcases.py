@@ -29,7 +29,9 @@ class WarehouseRobot(RuleBook):
         self.phase = "idle"
         #: True until the end of the goal, also while the goal is being canceled.
         self.under_way, self.canceling, self.failed_at = False, False, NEVER
-        #: True while a request to leave the dock, or the aisle, has no answer.
+        #: True while a movement at the dock has not ended, and while it is being canceled.
+        self.leaves_dock = self.stops_dock = False
+        #: True from the first request to leave the dock, or the aisle, until it has succeeded or was refused.
         self.undocking = self.leaving = False
         self.limit: float | None = None
 
@@ -54,8 +56,13 @@ class WarehouseRobot(RuleBook):
         match name:
             case "undock":
                 self.docked, self.undocking = self.docked and not done, False
+                self.leaves_dock = self.stops_dock = False
+            case "undock.u_error" | "undock.u_canceled":
+                self.leaves_dock = self.stops_dock = False
+            case "dock.u_canceled":
+                self.asks_dock = self.stops_dock = False
             case "dock" | "dock.u_error":
-                self.docked, self.asks_dock = done, False
+                self.docked, self.asks_dock, self.stops_dock = done, False, False
                 self.refused, self.refused_at = 0 if done else self.refused + 1, self.time
             case "try_again":
                 self.refused = self.refused % 3
@@ -119,6 +126,7 @@ class WarehouseRobot(RuleBook):
         free = all(zone == "free" for zone in self.zones.values())
         return first_fault(
             (self.under_way and not self.canceling and wrong is not None, "the journey has not been cancelled"),
+            ((self.leaves_dock or self.asks_dock) and self.stopped and not self.stops_dock, "the dock moves it on"),
             (self.limit == self.fast and not free, "the limit is too high"),
         )
 
@@ -190,8 +198,23 @@ class WarehouseRobot(RuleBook):
             (not self.docked, "it is off its dock"),
             (self.phase != "outbound", "nothing is ordered"),
             (not self.charged and not self.undocking, "little power"),
+            (self.leaves_dock, "it leaves its dock already"),
         )
-        self.undocking = True
+        self.undocking = self.leaves_dock = True
+        return fault
+
+    def _undock_cancel(self, _: Any) -> Fault:
+        return self._stop_at_dock(moves=self.leaves_dock)
+
+    def _dock_cancel(self, _: Any) -> Fault:
+        return self._stop_at_dock(moves=self.asks_dock)
+
+    def _stop_at_dock(self, *, moves: bool) -> Fault:
+        fault = first_fault(
+            (not moves or self.stops_dock, "it does not move at its dock"),
+            (not self.stopped, "it may go on"),
+        )
+        self.stops_dock = True
         return fault
 
     def _dock(self, _: Any) -> Fault:

@@ -13,9 +13,11 @@ from examples.simulator.warehouse import (
     Battery,
     Bumpers,
     Docking,
+    DockServer,
     Lift,
     SafetyLidars,
     Server,
+    Undocking,
     WarehouseNavigation,
 )
 from examples.simulator.world import STEP, World
@@ -95,20 +97,47 @@ def test_the_aisle_lets_nobody_in_while_it_is_crowded() -> None:
         assert (answers(aisle), aisle.let_in) == ([(call, done)], inside)
 
 
+def goal_of(dock: str) -> dict[str, Any]:
+    return {"dock_id": dock, "navigate_to_staging_pose": False}
+
+
+def ends(server: DockServer) -> list[tuple[int, str, bool]]:
+    found = [(number, how, data["success"]) for number, how, data in server.events]
+    server.events.clear()
+    return found
+
+
 def test_the_dock_lets_go_and_takes_back_whichever_way_the_robot_looks() -> None:
     docking, world = Docking(-0.7), World(Pose(-0.7, 0.0), fastest=1.0, acceleration=5.0)
-    docking.ask(world, "/undock", 1)
-    passed(world, docking, 4.0)
-    assert (answers(docking), docking.docked) == ([(1, True)], False)
+    undocking = Undocking(docking)
+    assert undocking.accept(world, 1, {})
+    passed(world, undocking, 4.0)
+    assert (ends(undocking), docking.docked) == ([(1, "succeeded", True)], False)
     assert world.pose.x == pytest.approx(0.0, abs=0.05)
     world.drive.pose = Pose(0.0, 0.0, 3.0)
+    assert not docking.accept(world, 2, goal_of("another"))
     docking.refusals = 1
-    docking.ask(world, "/dock", 2)
-    assert (answers(docking), docking.docked) == ([(2, False)], False)
-    docking.ask(world, "/dock", 3)
+    assert docking.accept(world, 3, goal_of("home"))
+    assert (ends(docking), docking.docked) == ([(3, "aborted", False)], False)
+    assert docking.accept(world, 4, goal_of("home"))
+    assert not docking.accept(world, 5, goal_of("home"))
     passed(world, docking, 8.0)
-    assert (answers(docking), docking.docked) == ([(3, True)], True)
+    assert (ends(docking), docking.docked) == ([(4, "succeeded", True)], True)
     assert (world.pose.x, world.pose.heading) == pytest.approx((-0.7, 0.0), abs=0.05)
+
+
+def test_a_canceled_movement_at_the_dock_stops_the_robot() -> None:
+    docking, world = Docking(-0.7), World(Pose(0.0, 0.0), fastest=1.0, acceleration=5.0)
+    docking.docked = False
+    assert docking.accept(world, 1, goal_of("home"))
+    passed(world, docking, 1.0)
+    assert not docking.cancel(world, 2)
+    assert docking.cancel(world, 1)
+    stopped = world.pose.x
+    passed(world, docking, 1.0)
+    assert (ends(docking), docking.docked) == ([(1, "canceled", False)], False)
+    assert world.pose.x == pytest.approx(stopped, abs=0.05)
+    assert -0.6 < stopped < -0.1
 
 
 def test_nav2_keeps_to_the_limit_and_to_its_distance() -> None:

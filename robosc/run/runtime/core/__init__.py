@@ -2,6 +2,7 @@
 
 `controller` and `layer` are event handlers (`event_handler`); `node` runs them on any ROS. They reach the middleware
 through `port`, call services and actions by `clients`, offer them by `proxies`, and do one thing at a time in an
-`event_loop`. `times` and `monitors` watch the clock and the graph. `reports`, `component_status`, `blocking` and
-`event_log` make the reports of a node; subscribers to them implement `subscriber`.
+`event_loop`. `message_queues` orders arrived messages. `times` and `monitors` watch the clock and the graph.
+`reports`, `component_status`, `blocking` and `event_log` make the reports of a node; subscribers to them implement
+`subscriber`.
 """

@@ -18,6 +18,8 @@ from robosc.model.semantics.messages import EACH, first_value
 from robosc.model.semantics.operators import UnreadableError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
     from robosc.engine import Engine
     from robosc.run.runtime.core.json_text import Json
     from robosc.run.runtime.core.port import ControllerPort, Message
@@ -106,7 +108,7 @@ class NodeData:
         """Return the value of an expression; `data` is the incoming data. Raises UnreadableError."""
         program = self._programs.get(expression)
         if program is None:
-            program = Program[Value](expression, lambda reference: partial(self._read, reference), fit)
+            program = Program[Value](expression, self._reader, fit)
             self._programs[expression] = program
         return program(data)
 
@@ -163,44 +165,70 @@ class NodeData:
                 continue
         return conversion.default
 
-    def _read(self, reference: ex.Expression, *context: Any) -> Value:
-        """Return the value of a reference; `context` is the element that it reads, its indices, and the data."""
+    def _reader(self, reference: ex.Expression) -> Callable[..., Any]:
+        """Return the function that reads a reference, of the element that it reads, its indices, and the data."""
         match reference:
             case rosgraph.NodeVariableReference():
-                value = self.variables[reference.variable]
-                return single_precision(value) if reference.single and isinstance(value, float) else value
+                return partial(self._node_variable, reference.variable, bool(reference.single))
             case rosgraph.WireAccess():
-                return self.leaf(self._reach(reference, *context), reference.type)
+                reach, kind = self._reach(reference), reference.type
+                return lambda *context: self.leaf(reach(*context), kind)
             case rosgraph.ConversionCall():
-                return self.convert(reference.conversion, self._reach(reference.argument, *context))
+                reach, conversion = self._reach(reference.argument), reference.conversion
+                return lambda *context: self.convert(conversion, reach(*context))
             case rosgraph.ArrayLiteral():
-                return context[:-1]
+                return lambda *context: context[:-1]
             case rosgraph.ErrorReason():
-                return next(literal for literal in reference.enumeration.literals if literal.name == self.reason)
+                literals = {str(literal.name): literal for literal in reference.enumeration.literals}
+                return lambda *_: literals[str(self.reason)]
             case ex.EnumerationLiteralReference():
-                return reference.literal
+                literal = reference.literal
+                return lambda *_: literal
             case sct.LocationReference():
-                return self.is_in(reference.location)
+                location = reference.location
+                return lambda *_: self.is_in(location)
             case sct.VariableReference():
-                return self._variable(reference.variable)
+                variable = reference.variable
+                return lambda *_: self._variable(variable)
         raise TypeError(f"a ROS graph holds no {type(reference).__name__}")
 
-    def _reach(self, access: rosgraph.WireAccess, *context: Any) -> Any:
-        """Return the value that an access reads of a message or an element at these indices. Raises UnreadableError."""
-        start = context[-1] if access.variable is None else self.variables[access.variable]
-        rest = iter(context if access.quantifier else (start, *context[:-1]))
-        reached = next(rest)
-        for step in access.steps:
-            match step:
-                case rosgraph.FieldStep():
-                    reached = self._field(reached, step.name)
-                case rosgraph.IndexStep():
-                    index = step.index if step.position is None else next(rest)
-                    assert index is not None
-                    reached = self._element(reached, index)
-                case rosgraph.SliceStep():
-                    reached = self._slice(reached, next(rest), next(rest))
-        return reached
+    def _node_variable(self, variable: rosgraph.NodeVariable, single: bool, *_: Any) -> Value:
+        value = self.variables[variable]
+        return single_precision(value) if single and isinstance(value, float) else value
+
+    def _reach(self, access: rosgraph.WireAccess) -> Callable[..., Any]:
+        """Return the function that reads the value of an access, of a message or an element, as `_reader` does.
+
+        The function raises UnreadableError.
+        """
+        variable, is_inner = access.variable, access.quantifier is not None
+        steps = list(map(self._step, access.steps))
+
+        def reach(*context: Any) -> Any:
+            start = context[-1] if variable is None else self.variables[variable]
+            rest = iter(context if is_inner else (start, *context[:-1]))
+            reached = next(rest)
+            for step in steps:
+                reached = step(reached, rest)
+            return reached
+
+        return reach
+
+    def _step(self, step: rosgraph.WireStep) -> Callable[[Any, Iterator[int]], Any]:
+        """Return the function that takes a step from an object or array; computed indices come from the iterator."""
+        match step:
+            case rosgraph.FieldStep():
+                name = step.name
+                return lambda reached, _: self._field(reached, name)
+            case rosgraph.SliceStep():
+                return lambda reached, rest: self._slice(reached, next(rest), next(rest))
+            case rosgraph.IndexStep() if step.position is not None:
+                return lambda reached, rest: self._element(reached, next(rest))
+            case rosgraph.IndexStep():
+                index = step.index
+                assert index is not None
+                return lambda reached, _: self._element(reached, index)
+        raise TypeError(f"no step of an access is a {type(step).__name__}")
 
     def at(self, data: Any, path: Sequence[str]) -> Any:
         """Return the value at a path of names and positions. Raises UnreadableError."""

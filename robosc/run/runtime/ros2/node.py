@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections import Counter
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -17,6 +16,7 @@ from robosc.model import rosgraph
 from robosc.model.semantics.communication import QUEUE_DEPTH
 from robosc.model.semantics.naming import below_layer
 from robosc.run.runtime.core.event_loop import EventLoop
+from robosc.run.runtime.core.message_queues import MessageQueue, MessageQueues
 from robosc.run.runtime.core.node import DIAGNOSTICS, FAREWELL, LONGEST_WAIT, RunningNode, StartError
 from robosc.run.runtime.core.port import CallHandlers, Endpoint, GoalHandlers
 from robosc.run.runtime.core.settings import check
@@ -79,9 +79,6 @@ _KEPT_POLICIES = (QoSPolicyKind.HISTORY, QoSPolicyKind.DEPTH)
 _SENDING = "/_action/send_goal"
 #: Seconds between two looks at the publishers of topics.
 _LOOK = 0.05
-#: Messages of a topic handled before an expired timer, and before the turn of the next topic.
-MOST_HEARD = 1000
-MOST_AT_ONCE = 10
 
 
 class Ros2Node(RunningNode):
@@ -106,14 +103,14 @@ class Ros2Node(RunningNode):
         self.node = start(name, arguments)
         self._executor = executor()
         self._executor.add_node(self.node)
+        post = None if isinstance(self._executor, SingleThreadedExecutor) else self._executor.create_task
+        self._queues = MessageQueues(lambda wait: self._executor.spin_once(timeout_sec=wait), post)
         self._clock = self.node.get_clock()
         self.simulated = bool(self.node.get_parameter("use_sim_time").value)
         self.event_loop = EventLoop(self.now if self.simulated else time.monotonic, starts_late=self.simulated)
         self._pending: dict[rosgraph.ServiceClient, Any] = {}
         self._qualities: dict[rosgraph.Subscription | rosgraph.Publisher, Any] = {}
         self._durabilities = _Durabilities(self.node)
-        #: Number of messages on each topic that `_take` handled.
-        self._heard: Counter[str] = Counter()
 
     def _load_type(self, interface: rosgraph.Interface) -> Any:
         message_type = super()._load_type(interface)
@@ -186,8 +183,7 @@ class Ros2Node(RunningNode):
     def _spin_once(self) -> None:
         left = self.event_loop.run_pending()
         wait = LONGEST_WAIT if left is None or self.simulated else min(left, LONGEST_WAIT)
-        # The executor sees all other work, one item at a time, also for each message that was taken here.
-        self._executor.spin_once(timeout_sec=0 if self._take(MOST_AT_ONCE) else wait)
+        self._queues.run_once(wait)
 
     def _take_leave(self) -> None:
         until = time.monotonic() + FAREWELL
@@ -238,16 +234,16 @@ class Ros2Node(RunningNode):
         )
 
     def _subscribe(self, subscription: rosgraph.Subscription, receive: Callable[[Message], None]) -> None:
-        subscriptions: list[Any] = []
+        subscriptions: list[QueuedSubscription] = []
         reception = self._reception(subscription)
 
         def subscribe(lasting: bool) -> None:
             requested = _qos(reception.latched if lasting else reception)
             while subscriptions:
-                self.node.destroy_subscription(subscriptions.pop())
+                subscriptions.pop().close()
             self._qualities[subscription] = requested
             subscriptions.append(
-                self.node.create_subscription(
+                self.listen(
                     self._types[subscription.interface],
                     subscription.topic,
                     receive,
@@ -264,6 +260,12 @@ class Ros2Node(RunningNode):
         if reception.settings.durability is None:
             self._durabilities.watch(subscription.topic, subscribe, lasting=False)
 
+    def listen(
+        self, kind: Any, topic: str, receive: Callable[[Message], None], qos: Any, **options: Any
+    ) -> QueuedSubscription:
+        """Subscribe to a topic; its messages wait for the turn of their queue."""
+        return QueuedSubscription(self.node, self._queues, receive, (kind, topic, qos), options)
+
     def _relay(
         self,
         element: rosgraph.Subscription | rosgraph.Publisher,
@@ -273,7 +275,7 @@ class Ros2Node(RunningNode):
     ) -> _Relay:
         sent = quality.forwarding(element.topic, self._configuration)
         route = _Route(self._types[element.interface], source, target, self._reception(element), sent)
-        return _Relay(self.node, self._durabilities, route, forwarded)
+        return _Relay(self, self._durabilities, route, forwarded)
 
     def type_name(self, interface: rosgraph.Interface) -> str:
         return f"{interface.package}/{FOLDERS[interface.kind.name]}/{interface.type}"
@@ -314,28 +316,7 @@ class Ros2Node(RunningNode):
         return [endpoint for endpoint in endpoints if endpoint.node != self.full_name]
 
     def hear(self) -> None:
-        # The executor handles one message at a time, with planned calls in between.
-        self._take(MOST_HEARD)
-
-    def _take(self, most: int) -> int:
-        """Handle arrived messages, at most `most` of each topic; return their number.
-
-        The executor takes messages in the order in which they came, so a stop would wait behind thousands of scans.
-        Here topics with few messages come first.
-        """
-        taken = 0
-        for subscription in sorted(self.node.subscriptions, key=lambda known: self._heard[known.topic_name]):
-            if subscription.topic_name == "/clock":
-                continue
-            for _ in range(most):
-                with subscription.handle:
-                    arrived = subscription.handle.take_message(subscription.msg_type, subscription.raw)
-                if arrived is None:
-                    break
-                subscription.callback(arrived[0])
-                self._heard[subscription.topic_name] += 1
-                taken += 1
-        return taken
+        self._queues.empty()
 
     # Data
 
@@ -427,6 +408,36 @@ def _full_name(info: Any) -> str:
     return f"{info.node_namespace.rstrip('/')}/{info.node_name}"
 
 
+class QueuedSubscription:
+    """Subscription whose messages wait in a queue. `topic`: the type, the name and the quality of service."""
+
+    def __init__(
+        self,
+        node: Any,
+        queues: MessageQueues,
+        receive: Callable[[Message], None],
+        topic: tuple[Any, str, Any],
+        options: Mapping[str, Any],
+    ) -> None:
+        self._node = node
+        self._queues = queues
+        kind, name, qos = topic
+        self._queue = MessageQueue(receive, self._take, qos.depth)
+        self._subscription = node.create_subscription(kind, name, self._queue.store, qos, **options)
+        queues.add(self._queue)
+
+    def close(self) -> None:
+        """Unsubscribe."""
+        self._node.destroy_subscription(self._subscription)
+        self._queues.remove(self._queue)
+
+    def _take(self) -> Message | None:
+        subscription = self._subscription
+        with subscription.handle:
+            message_and_info = subscription.handle.take_message(subscription.msg_type, subscription.raw)
+        return None if message_and_info is None else message_and_info[0]
+
+
 @dataclass(frozen=True)
 class _Route:
     """Route from one topic to another, each with its quality of service."""
@@ -483,13 +494,14 @@ class _Relay:
     """
 
     def __init__(
-        self, node: Any, durabilities: _Durabilities, route: _Route, forwarded: Callable[[Message], Message | None]
+        self, port: Ros2Node, durabilities: _Durabilities, route: _Route, forwarded: Callable[[Message], Message | None]
     ) -> None:
-        self._node = node
+        self._port = port
+        node = self._node = port.node
         self._route = route
         self._forwarded = forwarded
         self._lasting = False
-        self._subscription: Any = None
+        self._subscription: QueuedSubscription | None = None
         self._publisher = node.create_publisher(route.kind, route.target, _qos(route.sent))
         durabilities.watch(node.resolve_topic_name(route.source), self._open)
 
@@ -501,9 +513,9 @@ class _Relay:
             sent = route.sent.latched if lasting else route.sent
             self._publisher = node.create_publisher(route.kind, route.target, _qos(sent))
         if self._subscription is not None:
-            node.destroy_subscription(self._subscription)
+            self._subscription.close()
         received = route.received.latched if lasting else route.received.volatile
-        self._subscription = node.create_subscription(route.kind, route.source, self._forward, _qos(received))
+        self._subscription = self._port.listen(route.kind, route.source, self._forward, _qos(received))
 
     def _forward(self, message: Message) -> None:
         forwarded = self._forwarded(message)
