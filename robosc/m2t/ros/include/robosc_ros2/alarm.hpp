@@ -22,21 +22,17 @@ class Alarm final : public Timeouts {
  public:
   template <typename Node>
   Alarm(Node& node, const CallbackGuard& guard, Engine engine)
-      : Timeouts(std::move(engine), !waiting_clock(node)->started()), clock_(waiting_clock(node)) {
-    const auto call = guard([this] {
-      cancel();
-      ring();
-    });
-    const bool simulated = clock_ == node.get_clock();
-    plan_ = [&node, simulated, call, this](std::chrono::milliseconds left) -> rclcpp::TimerBase::SharedPtr {
-      if (simulated) return rclcpp::create_timer(&node, clock_, left, call);
-      return node.create_wall_timer(left, call);
-    };
+      : Timeouts(std::move(engine), !waiting_clock(node)->started()),
+        clock_(waiting_clock(node)),
+        make_timer_(timer_factory(node, guard([this] {
+                                    timer_.reset();
+                                    ring();
+                                  }))) {
     // Timers run from the start of the clock, even without an event at that moment.
     if (!clock_->started()) {
       begin_ = node.create_wall_timer(kLook, guard([this] {
                                         if (!clock_->started()) return;
-                                        begin_->cancel();
+                                        begin_.reset();
                                         at();
                                         wait();
                                       }));
@@ -45,24 +41,15 @@ class Alarm final : public Timeouts {
 
   Alarm(const Alarm&) = delete;
   Alarm& operator=(const Alarm&) = delete;
-  ~Alarm() override { cancel(); }
 
  private:
   std::int64_t nanoseconds() const override { return clock_->now().nanoseconds(); }
   bool has_begun() const override { return clock_->started(); }
 
-  void set(std::chrono::milliseconds left) override {
-    cancel();
-    timer_ = plan_(left);
-  }
-
-  void cancel() {
-    if (timer_) timer_->cancel();
-    timer_.reset();
-  }
+  void set(std::chrono::milliseconds left) override { timer_ = make_timer_(left); }
 
   rclcpp::Clock::SharedPtr clock_;
-  std::function<rclcpp::TimerBase::SharedPtr(std::chrono::milliseconds)> plan_;
+  std::function<rclcpp::TimerBase::SharedPtr(std::chrono::nanoseconds)> make_timer_;
   rclcpp::TimerBase::SharedPtr timer_;
   rclcpp::TimerBase::SharedPtr begin_;
 };

@@ -38,6 +38,7 @@ class ControllerNode : public GuardedNode<Node> {
     {
       const auto lock = this->guard_.hold();
       leave();
+      finalize();
     }
     GuardedNode<Node>::close();
   }
@@ -54,6 +55,8 @@ class ControllerNode : public GuardedNode<Node> {
   virtual void halt() = 0;
   /// Other steps before the end of the node.
   virtual void finish() {}
+  /// Ends the lifecycle of the node, if it has one.
+  virtual void finalize() {}
   /// Handles the end of a period.
   virtual void tick() = 0;
 
@@ -135,6 +138,7 @@ class ControllerNode : public GuardedNode<Node> {
       const auto lock = this->guard_.hold();
       if (waits()) return true;
       leave();
+      finalize();
       return false;
     });
   }

@@ -34,7 +34,6 @@ class Durabilities {
 
   Durabilities(const Durabilities&) = delete;
   Durabilities& operator=(const Durabilities&) = delete;
-  ~Durabilities() { timer_->cancel(); }
 
   /// Calls `changed` whenever a topic becomes lasting or no longer is. `lasting`: the known value, or nothing if
   /// unknown.

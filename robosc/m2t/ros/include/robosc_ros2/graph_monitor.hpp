@@ -36,12 +36,11 @@ class GraphMonitor {
 
   GraphMonitor(const GraphMonitor&) = delete;
   GraphMonitor& operator=(const GraphMonitor&) = delete;
-  ~GraphMonitor() { stop(); }
 
   /// Stops the checks. A node can't query the graph after its context is closed.
   void stop() {
-    stopped_ = true;  // An events executor may have queued a check.
-    timer_->cancel();
+    stopped_ = true;  // An executor may have queued a check.
+    timer_.reset();
   }
 
   /// Adds a topic that the node receives, or updates its quality of service.

@@ -38,21 +38,12 @@ class ShutdownHook {
   ShutdownHook(
       Node& node, std::function<void()> function, std::function<bool()> waits = [] { return false; })
       : function_(std::move(function)),
+        waits_(std::move(waits)),
         logger_(node.get_logger()),
         context_(node.get_node_base_interface()->get_context()) {
-    timer_ = node.create_wall_timer(std::chrono::milliseconds(1), guard_([this, waits = std::move(waits)] {
-                                      if (finished_) return;  // An events executor had this call in its queue.
-                                      served_ = true;
-                                      run();
-                                      if (waits()) return;
-                                      finished_ = true;
-                                      timer_->cancel();
-                                      done_.set_value();
-                                    }));
-    timer_->cancel();
-    handle_ = context_->add_pre_shutdown_callback([this] {
+    handle_ = context_->add_pre_shutdown_callback([this, &node] {
       const std::future<void> done = done_.get_future();
-      timer_->reset();
+      const auto timer = node.create_wall_timer(std::chrono::milliseconds(1), guard_([this] { serve(); }));
       while (done.wait_for(std::chrono::seconds(1)) != std::future_status::ready) {
         if (!served_.exchange(false)) return run();
       }
@@ -69,6 +60,15 @@ class ShutdownHook {
   }
 
  private:
+  void serve() {
+    if (finished_) return;  // An executor may have queued this call.
+    served_ = true;
+    run();
+    if (waits_()) return;
+    finished_ = true;
+    done_.set_value();
+  }
+
   void run() {
     if (started_.exchange(true)) return;
     try {
@@ -79,10 +79,10 @@ class ShutdownHook {
   }
 
   std::function<void()> function_;
+  std::function<bool()> waits_;
   rclcpp::Logger logger_;
   rclcpp::Context::SharedPtr context_;
   rclcpp::PreShutdownCallbackHandle handle_;
-  rclcpp::TimerBase::SharedPtr timer_;
   std::atomic<bool> started_{false};
   std::atomic<bool> served_{false};
   bool finished_ = false;  ///< Used by the node's executor only.
