@@ -132,6 +132,25 @@ void siblings_exclude_each_other_and_close_alone() {
   CHECK(calls == 2001);
 }
 
+void beats_end_with_their_pointer_or_guard() {
+  CallbackGuard guard;
+  CallbackGuard sibling = guard.sibling();
+  int first = 0, second = 0;
+  CallbackGuard::Beat added;
+  CallbackGuard::Beat kept = guard.at_each_beat([&] {
+    ++first;
+    added = sibling.at_each_beat([&] { ++second; });
+  });
+  guard.beat();
+  CHECK(first == 1 && second == 1);
+  kept.reset();
+  guard.beat();
+  CHECK(first == 1 && second == 2);
+  sibling.close();
+  guard.beat();
+  CHECK(second == 2);
+}
+
 std::vector<std::string> lines(const std::string& path) {
   std::ifstream file(path);
   std::vector<std::string> found;
@@ -244,6 +263,7 @@ int main(int, char** arguments) {
   what_is_made_after_closing_runs();
   who_comes_after_closing_does_not_wait();
   siblings_exclude_each_other_and_close_alone();
+  beats_end_with_their_pointer_or_guard();
   a_log_is_whole_and_in_order(folder + "/whole");
   a_log_tells_of_an_event_at_once(folder + "/at_once");
   a_disk_that_hangs_delays_nobody(folder + "/pipe");

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <list>
 #include <memory>
 #include <mutex>
 #include <utility>
@@ -25,7 +26,7 @@ class CallbackGuard {
   ~CallbackGuard() { close(); }
 
   /// A guard to close on its own. Its callbacks and those of this guard exclude each other.
-  CallbackGuard sibling() const { return CallbackGuard(state_->mutex); }
+  CallbackGuard sibling() const { return CallbackGuard(shared_); }
 
   /// The function, without effect if the guard is closed after this call.
   template <typename Function>
@@ -34,32 +35,58 @@ class CallbackGuard {
   }
 
   /// While you hold this lock, no guarded callback runs in another thread.
-  std::unique_lock<std::recursive_mutex> hold() const { return std::unique_lock<std::recursive_mutex>(*state_->mutex); }
+  std::unique_lock<std::recursive_mutex> hold() const { return std::unique_lock<std::recursive_mutex>(shared_->mutex); }
 
   void close() {
-    ++state_->closed;  // Counts before it locks: new callbacks skip the lock and can't starve this thread.
+    ++*closed_;  // Counts before it locks: new callbacks skip the lock and can't starve this thread.
     const auto lock = hold();
   }
 
+  /// A function that each `beat` calls. It ends with the last copy of this pointer, or when the guard is closed.
+  using Beat = std::shared_ptr<const std::function<void()>>;
+  Beat at_each_beat(std::function<void()> function) const {
+    const auto lock = hold();
+    const auto beat = std::make_shared<const std::function<void()>>((*this)(std::move(function)));
+    shared_->beats.push_back(beat);
+    return beat;
+  }
+
+  /// Calls the functions of this guard and its siblings.
+  void beat() const {
+    const auto lock = hold();
+    auto& beats = shared_->beats;
+    for (auto next = beats.begin(); next != beats.end();) {
+      if (const Beat beat = next->lock()) {
+        (*beat)();
+        ++next;
+      } else {
+        next = beats.erase(next);
+      }
+    }
+  }
+
  private:
-  struct State {
-    std::shared_ptr<std::recursive_mutex> mutex = std::make_shared<std::recursive_mutex>();
-    std::atomic<std::uint64_t> closed{0};  ///< The number of calls of `close`.
+  struct Shared {
+    std::recursive_mutex mutex;
+    std::list<std::weak_ptr<const std::function<void()>>> beats;
   };
 
-  explicit CallbackGuard(std::shared_ptr<std::recursive_mutex> mutex) { state_->mutex = std::move(mutex); }
+  explicit CallbackGuard(std::shared_ptr<Shared> shared) : shared_(std::move(shared)) {}
 
   template <typename... Arguments>
   std::function<void(Arguments...)> guarded(std::function<void(Arguments...)> function) const {
     const auto lock = hold();
-    return [state = state_, closed = state_->closed.load(), function = std::move(function)](Arguments... arguments) {
-      if (state->closed != closed) return;
-      const std::lock_guard<std::recursive_mutex> running(*state->mutex);
-      if (state->closed == closed) function(std::forward<Arguments>(arguments)...);
+    return [shared = shared_, closed = closed_, open = closed_->load(),
+            function = std::move(function)](Arguments... arguments) {
+      if (*closed != open) return;
+      const std::lock_guard<std::recursive_mutex> running(shared->mutex);
+      if (*closed == open) function(std::forward<Arguments>(arguments)...);
     };
   }
 
-  std::shared_ptr<State> state_ = std::make_shared<State>();
+  std::shared_ptr<Shared> shared_ = std::make_shared<Shared>();
+  /// The number of calls of `close`.
+  std::shared_ptr<std::atomic<std::uint64_t>> closed_ = std::make_shared<std::atomic<std::uint64_t>>(0);
 };
 
 }  // namespace ROBOSC_VERSION

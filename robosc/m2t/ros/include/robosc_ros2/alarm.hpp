@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <cstdint>
-#include <functional>
 #include <utility>
 
 #include <rclcpp/rclcpp.hpp>
@@ -24,20 +23,15 @@ class Alarm final : public Timeouts {
   Alarm(Node& node, const CallbackGuard& guard, Engine engine)
       : Timeouts(std::move(engine), !waiting_clock(node)->started()),
         clock_(waiting_clock(node)),
-        make_timer_(timer_factory(node, guard([this] {
-                                    timer_.reset();
-                                    ring();
-                                  }))) {
-    // Timers run from the start of the clock, even without an event at that moment.
-    if (!clock_->started()) {
-      begin_ = node.create_wall_timer(kLook, guard([this] {
-                                        if (!clock_->started()) return;
-                                        begin_.reset();
-                                        at();
-                                        wait();
-                                      }));
-    }
-  }
+        begun_(clock_->started()),
+        next_(node, guard, std::chrono::milliseconds(0), [this] { ring(); }),
+        beat_(guard.at_each_beat([this] {
+          // Timers run from the start of the clock, even without an event at that moment.
+          if (begun_ || !clock_->started()) return;
+          begun_ = true;
+          at();
+          wait();
+        })) {}
 
   Alarm(const Alarm&) = delete;
   Alarm& operator=(const Alarm&) = delete;
@@ -46,12 +40,12 @@ class Alarm final : public Timeouts {
   std::int64_t nanoseconds() const override { return clock_->now().nanoseconds(); }
   bool has_begun() const override { return clock_->started(); }
 
-  void set(std::chrono::milliseconds left) override { timer_ = make_timer_(left); }
+  void set(std::chrono::milliseconds left) override { next_.start(left); }
 
   rclcpp::Clock::SharedPtr clock_;
-  std::function<rclcpp::TimerBase::SharedPtr(std::chrono::nanoseconds)> make_timer_;
-  rclcpp::TimerBase::SharedPtr timer_;
-  rclcpp::TimerBase::SharedPtr begin_;
+  bool begun_;
+  Countdown next_;
+  CallbackGuard::Beat beat_;
 };
 
 }  // namespace ROBOSC_VERSION

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <iomanip>
+#include <optional>
 #include <random>
 #include <sstream>
 #include <string>
@@ -13,6 +14,7 @@
 
 #include "robosc/callback_guard.hpp"
 #include "robosc/version.hpp"
+#include "robosc_ros2/countdown.hpp"
 #include "robosc_ros2/shutdown_hook.hpp"
 
 namespace robosc {
@@ -33,9 +35,11 @@ class Bond {
     publisher_ = rclcpp::create_publisher<Status>(node, "bond", rclcpp::QoS(5));
     subscription_ = node.template create_subscription<Status>("bond", rclcpp::QoS(100),
                                                               guard([this](const Status& other) { hear(other); }));
-    timer_ = node.create_wall_timer(kHeartbeat, guard([this] {
-                                      if (timer_) publish(true);
-                                    }));
+    heartbeat_.emplace(node, guard, kHeartbeat, [this] {
+      publish(true);
+      heartbeat_->start();
+    });
+    heartbeat_->start();
   }
 
   Bond(const Bond&) = delete;
@@ -62,7 +66,7 @@ class Bond {
 
   void hear(const Status& other) {
     if (other.id != status_.id || other.instance_id == status_.instance_id || other.active) return;
-    timer_.reset();  // The manager has broken the bond, and waits for the answer.
+    heartbeat_->stop();  // The manager has broken the bond, and waits for the answer.
     publish(false);
   }
 
@@ -76,7 +80,7 @@ class Bond {
   Status status_;
   rclcpp::Publisher<Status>::SharedPtr publisher_;
   rclcpp::Subscription<Status>::SharedPtr subscription_;
-  rclcpp::TimerBase::SharedPtr timer_;
+  std::optional<Countdown> heartbeat_;
 };
 
 }  // namespace ROBOSC_VERSION

@@ -114,9 +114,13 @@ class ControllerNode : public GuardedNode<Node> {
     return monitor_ && monitor_->has_other_type(name) ? "the server has another type" : why;
   }
 
-  /// Starts the ticks.
+  /// Starts the ticks. The period is the same each time.
   void start(std::chrono::milliseconds period) {
-    const auto tick = this->guard_([this] { this->tick(); });
+    ticking_ = true;
+    if (timer_) return;
+    const auto tick = this->services_guard_([this] {
+      if (ticking_) this->tick();
+    });
     if (this->get_parameter("use_sim_time").as_bool()) {
       timer_ = rclcpp::create_timer(this, this->get_clock(), period, tick);
     } else {
@@ -134,7 +138,7 @@ class ControllerNode : public GuardedNode<Node> {
         monitor_->stop();
       }
     };
-    shutdown_hook_.emplace(*this, end, [this] {
+    shutdown_hook_.emplace(*this, this->guard_, end, [this] {
       const auto lock = this->guard_.hold();
       if (waits()) return true;
       leave();
@@ -155,6 +159,7 @@ class ControllerNode : public GuardedNode<Node> {
   bool active_ = false;
   std::optional<GraphMonitor> monitor_;
   std::optional<Durabilities> durabilities_;
+  bool ticking_ = false;
   rclcpp::TimerBase::SharedPtr timer_;
 
  private:
@@ -165,7 +170,6 @@ class ControllerNode : public GuardedNode<Node> {
     rclcpp::SubscriptionOptions options;
     options.qos_overriding_options = overrides;
     options.use_default_callbacks = false;
-    subscription.reset();
     subscription = this->template create_subscription<Message>(topic, quality, this->guard_(heard), options);
     monitor().hear(topic, rosidl_generator_traits::name<Message>(), subscription->get_actual_qos());
   }

@@ -16,6 +16,8 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
+/// The interval between beats of a node, in which its countdowns expire.
+inline constexpr std::chrono::milliseconds kBeat(10);
 /// The interval between checks of a condition.
 inline constexpr std::chrono::milliseconds kLook(20);
 
@@ -26,25 +28,10 @@ rclcpp::Clock::SharedPtr waiting_clock(Node& node) {
   return std::make_shared<rclcpp::Clock>(RCL_STEADY_TIME);
 }
 
-/// Creates timers on the steady clock or, with `use_sim_time`, in the time of ROS.
-///
-/// Never reset or cancel a timer. Some executors sort their timers only when one is added or has expired. After a
-/// reset, they call the others late or never. Some queue the calls of expired timers: a call may follow a cancel. So a
-/// timer is dropped instead, and its callback checks whether it is due.
-template <typename Node>
-std::function<rclcpp::TimerBase::SharedPtr(std::chrono::nanoseconds)> timer_factory(Node& node,
-                                                                                    std::function<void()> call) {
-  const rclcpp::Clock::SharedPtr clock = waiting_clock(node);
-  const bool simulated = clock == node.get_clock();
-  return [&node, clock, simulated, call = std::move(call)](std::chrono::nanoseconds period) {
-    if (simulated) return rclcpp::TimerBase::SharedPtr(rclcpp::create_timer(&node, clock, period, call));
-    return rclcpp::TimerBase::SharedPtr(node.create_wall_timer(period, call));
-  };
-}
-
 /// Calls a function once, a given time after each start: on the steady clock, or in ROS time with `use_sim_time`.
 ///
-/// A timer that expires before the countdown is due is replaced by one for the rest of the time.
+/// It expires at a beat of the guard, and has no timer of its own. The events executor of Jazzy delays other timers
+/// when one is reset or canceled, and may never call a timer that takes the place of a destroyed one.
 class Countdown {
  public:
   template <typename Node>
@@ -52,51 +39,42 @@ class Countdown {
       : over_(std::move(over)),
         time_(time),
         clock_(waiting_clock(node)),
-        make_timer_(timer_factory(node, guard([this] { look(); }))) {}
+        beat_(guard.at_each_beat([this] { look(); })) {}
 
   Countdown(const Countdown&) = delete;
   Countdown& operator=(const Countdown&) = delete;
 
   /// Starts or restarts with the full time.
-  void start() {
+  void start() { start(time_); }
+  /// The same with another time.
+  void start(std::chrono::nanoseconds time) {
     running_ = true;
+    current_ = time;
     began_ = clock_->started();
     started_ = clock_->now().nanoseconds();
-    if (!timer_) wait(time_);
   }
   void stop() { running_ = false; }
   bool running() const { return running_; }
 
  private:
-  void wait(std::chrono::nanoseconds time) {
-    waited_ = time;
-    timer_ = make_timer_(time);
-  }
-
   void look() {
-    timer_.reset();
     if (!running_) return;
     const std::int64_t now = clock_->now().nanoseconds();
-    if (now < started_) started_ = now - waited_.count();  // The clock has jumped back. The timer has expired since.
-    const std::chrono::nanoseconds left = time_ - std::chrono::nanoseconds(now - started_);
-    if (left.count() > 0) return wait(left);
+    // The first message starts a clock of simulated time. No time elapses before it, or when the clock jumps back.
+    if (now < started_ || (!began_ && clock_->started())) return start(current_);
+    if (!began_ || now - started_ < current_.count()) return;
     stop();
-    if (began_) {
-      over_();
-    } else {
-      start();
-    }
+    over_();
   }
 
   std::function<void()> over_;
   std::chrono::nanoseconds time_;
+  std::chrono::nanoseconds current_ = time_;
   rclcpp::Clock::SharedPtr clock_;
-  std::function<rclcpp::TimerBase::SharedPtr(std::chrono::nanoseconds)> make_timer_;
   bool running_ = false;
-  bool began_ = true;                        ///< The first message starts a clock of simulated time.
-  std::int64_t started_ = 0;                 ///< In nanoseconds.
-  std::chrono::nanoseconds waited_ = time_;  ///< The time of the last timer.
-  rclcpp::TimerBase::SharedPtr timer_;
+  bool began_ = true;
+  std::int64_t started_ = 0;  ///< In nanoseconds.
+  CallbackGuard::Beat beat_;
 };
 
 }  // namespace ROBOSC_VERSION

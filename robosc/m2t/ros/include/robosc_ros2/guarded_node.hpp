@@ -11,6 +11,7 @@
 #include "robosc/callback_guard.hpp"
 #include "robosc/hangup.hpp"
 #include "robosc/version.hpp"
+#include "robosc_ros2/countdown.hpp"
 #include "robosc_ros2/node_services.hpp"
 
 namespace robosc {
@@ -36,6 +37,7 @@ class GuardedNode : public Node {
   GuardedNode(const std::string& name, const rclcpp::NodeOptions& options, More... more)
       : Node(name, rclcpp::NodeOptions(options).start_parameter_services(false), more...) {
     if (options.start_parameter_services()) serve_parameters(services_, *this, services_guard_);
+    beats_ = this->create_wall_timer(kBeat, services_guard_([this] { guard_.beat(); }));
   }
 
   /// Closes the node. Call it first in the destructor of a derived class: executors may call back until this returns.
@@ -53,6 +55,7 @@ class GuardedNode : public Node {
   CallbackGuard guard_;
   CallbackGuard services_guard_ = guard_.sibling();
   NodeServices services_;
+  rclcpp::TimerBase::SharedPtr beats_;
 };
 
 }  // namespace ROBOSC_VERSION

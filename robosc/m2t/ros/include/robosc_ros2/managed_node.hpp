@@ -94,11 +94,13 @@ class ManagedNode : public ControllerNode<rclcpp_lifecycle::LifecycleNode> {
  private:
   void release() {
     guard_.close();
-    timer_.reset();
+    ticking_ = false;
     finish();
     disconnect();
     durabilities_.reset();
     monitor_.reset();
+    // The events executor of Jazzy takes a new subscription for a destroyed one, unless it looks in between.
+    get_node_base_interface()->get_notify_guard_condition().trigger();
   }
 };
 
