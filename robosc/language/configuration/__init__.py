@@ -188,7 +188,7 @@ def _lifecycle(value: Any) -> Any:
     if isinstance(value, bool):
         return {} if value else None
     if not isinstance(value, dict):
-        raise ValueError('must be true, false or an object, such as {"bond": true}')
+        raise ValueError('must be true, false or an object, such as {"bond": true}')  # noqa: TRY004
     return value
 
 
@@ -250,12 +250,12 @@ class Configuration(_Settings):
         description="Reaction to an event from the robot that violates an assumption. stop: hold commands back, cancel"
         " actions and send onShutdown, a layer onBlocked, until the node is started again. report: go on.",
     )
-    lifecycle: Annotated[
-        Lifecycle | None, BeforeValidator(_lifecycle, json_schema_input_type=bool | Lifecycle)
-    ] = Field(
-        default=None,
-        description="Whether the ROS 2 node is a managed (lifecycle) node. An object sets its details.",
-        json_schema_extra={"default": False},
+    lifecycle: Annotated[Lifecycle | None, BeforeValidator(_lifecycle, json_schema_input_type=bool | Lifecycle)] = (
+        Field(
+            default=None,
+            description="Whether the ROS 2 node is a managed (lifecycle) node. An object sets its details.",
+            json_schema_extra={"default": False},
+        )
     )
     package: Package = Package()
 

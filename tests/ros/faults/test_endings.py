@@ -62,7 +62,9 @@ def test_shutdown_while_the_server_refuses(guarded: Scout) -> None:
     os.kill(guarded.process.pid, signal.SIGINT)
     assert guarded.process.wait(PATIENCE) == 0
     server.wait("cancel", value=goal)
-    guarded.until_says(None, "/travel: the goal has not ended when this node ends: the server refuses to cancel the goal")
+    guarded.until_says(
+        None, "/travel: the goal has not ended when this node ends: the server refuses to cancel the goal"
+    )
     server.do("end", number=goal, how="succeeded")
 
 
