@@ -237,6 +237,50 @@ def test_a_managed_node_that_is_not_active_ends_without_a_word(graph: Graph) -> 
     assert "outside" not in log.read_text()
 
 
+def test_an_active_managed_node_has_a_bond_with_its_manager(graph: Graph) -> None:
+    """A bond that one end breaks is answered; the bond of a killed node falls silent."""
+    world, name = graph.world, "bonded"
+
+    def beats(*, active: bool) -> int:
+        heard = (entry["data"] for entry in world.all("heard") if entry["heard"] == "/bond")
+        return sum(data["id"] == name and data["active"] == active for data in heard)
+
+    world.do("listen", topic="/bond", kind="bond/Status")
+    world.do("advertise", topic="/bond", kind="bond/Status")
+    node, _ = graph.start("managed_watch", name)
+    change = partial(graph.change, f"/{name}")
+    assert change(CONFIGURE) == [True]
+    assert beats(active=True) == beats(active=False) == 0
+    assert change(ACTIVATE) == [True]
+    graph.processes.wait_until(lambda: beats(active=True) > 3, "the node sends heartbeats")
+    assert beats(active=False) == 0
+    assert change(DEACTIVATE) == [True]
+    graph.processes.wait_until(lambda: beats(active=False) == 1, "the node breaks the bond")
+    assert change(ACTIVATE) == [True]
+    graph.processes.wait_until(lambda: graph.world.do("listeners", topic="/bond") > 1, "the node listens")
+    world.do("publish", topic="/bond", fields={"id": name, "instance_id": "manager", "active": False})
+    graph.processes.wait_until(lambda: beats(active=False) == 2, "the node answers")
+    heard = beats(active=True)
+    assert change(DEACTIVATE, ACTIVATE) == [True, True]
+    graph.processes.wait_until(lambda: beats(active=True) > heard + 3, "there is a new bond")
+    broken = beats(active=False)
+    assert graph.processes.stop(node) == 0
+    graph.processes.wait_until(lambda: beats(active=False) > broken, "the end of the node breaks the bond")
+
+
+def test_a_managed_node_takes_its_last_transition(graph: Graph) -> None:
+    graph.world.do("listen", topic="/last/transition_event", kind="lifecycle_msgs/TransitionEvent")
+    node, _ = graph.start("managed_watch", "last")
+    assert graph.change("/last", CONFIGURE, ACTIVATE) == [True, True]
+    assert graph.processes.stop(node) == 0
+
+    def goals() -> list[str]:
+        heard = (entry for entry in graph.world.all("heard") if entry["heard"] == "/last/transition_event")
+        return [entry["data"]["goal_state"]["label"] for entry in heard]
+
+    graph.processes.wait_until(lambda: goals()[-2:] == ["shuttingdown", "finalized"], "the node is finalized")
+
+
 @dataclass(frozen=True)
 class Watch:
     """The node of `managed/watch.rscd`, with operations on it."""

@@ -8,7 +8,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, get_origin
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, PrivateAttr, ValidationError
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, PrivateAttr, ValidationError
 from pydantic.alias_generators import to_camel
 
 from robosc.base.diagnostics import Diagnostic, ModelError, Severity, Span
@@ -185,6 +185,22 @@ class Package(_Settings):
     )
 
 
+class Lifecycle(_Settings):
+    """A managed node."""
+
+    bond: bool = Field(
+        default=False, description="Whether the active node has a bond, as nav2_lifecycle_manager expects it."
+    )
+
+
+def _lifecycle(value: Any) -> Any:
+    if isinstance(value, bool):
+        return {} if value else None
+    if not isinstance(value, dict):
+        raise ValueError('must be true, false or an object, such as {"bond": true}')  # noqa: TRY004
+    return value
+
+
 class Configuration(_Settings):
     """All settings of generated code. In JSON the names are in camelCase; each is optional."""
 
@@ -248,7 +264,13 @@ class Configuration(_Settings):
         description="Reaction to an event from the robot that violates an assumption. stop: hold commands back, cancel"
         " actions and send onShutdown, a layer onBlocked, until the node is started again. report: go on.",
     )
-    lifecycle: bool = Field(default=False, description="Whether the ROS 2 node is a managed (lifecycle) node.")
+    lifecycle: Annotated[Lifecycle | None, BeforeValidator(_lifecycle, json_schema_input_type=bool | Lifecycle)] = (
+        Field(
+            default=None,
+            description="Whether the ROS 2 node is a managed (lifecycle) node. An object sets its details.",
+            json_schema_extra={"default": False},
+        )
+    )
     parameters: Literal["node", "library"] = Field(
         default="node",
         description="Whether a ROS 2 node itself or generate_parameter_library declares its parameters.",
@@ -261,6 +283,11 @@ class Configuration(_Settings):
     def model_post_init(self, context: Any) -> None:
         """Store the file and text of the configuration, so that later findings can be located."""
         self._file, self._text = context or (FILE_NAME, "{}")
+
+    @property
+    def has_bond(self) -> bool:
+        """Whether the node is managed and has a bond."""
+        return self.lifecycle is not None and self.lifecycle.bond
 
     def package_name(self, robot: "NamedElement") -> str:
         """Return the name of a robot's package, node and executable."""

@@ -413,7 +413,7 @@ def _unused(configuration: Configuration) -> Iterator[Diagnostic]:
         "onShutdown": configuration.on_shutdown,
         "onWithheld": configuration.on_withheld,
         "waitFor": configuration.wait_for,
-        "lifecycle": configuration.lifecycle,
+        "lifecycle": configuration.lifecycle is not None,
     }
     for key, used in settings.items():
         if used:

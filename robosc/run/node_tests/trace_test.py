@@ -94,7 +94,7 @@ def _connections(
     """Return the player's description of the node."""
     return {
         "node": configuration.package_name(graph),
-        "managed": configuration.lifecycle,
+        "managed": configuration.lifecycle is not None,
         "period": started["period_ms"] / 1000,
         "timed": any(event.timer is not None for plant in graph.model.plants for event in plant.events),
         "subscriptions": [

@@ -66,6 +66,10 @@ def command(
         supervise_models(models, report)
         target = TARGETS["ros2-layer" if layer else "ros2"]
         report.add(target.findings(models, settings))
+        if settings.lifecycle and not layer:
+            report.add(
+                [settings.warning(("lifecycle",), '"lifecycle" has no effect on `run`: its node is always active')]
+            )
         report.stop_on_errors()
     _run(models, settings, arguments, layer=layer)
 

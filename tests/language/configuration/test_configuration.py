@@ -43,7 +43,7 @@ EVERYTHING = {
     "onBlocked": ["velocity"],
     "waitFor": ["/scan"],
     "onViolation": "report",
-    "lifecycle": True,
+    "lifecycle": {"bond": True},
     "parameters": "library",
     "package": {
         "name": "my_robot",
@@ -81,6 +81,21 @@ def test_all_is_optional(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("text", "managed", "bond"),
+    [
+        ("false", False, False),
+        ("true", True, False),
+        ("{}", True, False),
+        ('{"bond": false}', True, False),
+        ('{"bond": true}', True, True),
+    ],
+)
+def test_a_lifecycle_may_have_a_bond(tmp_path: Path, text: str, managed: bool, bond: bool) -> None:
+    configuration = read(tmp_path, f'{{"lifecycle": {text}}}')
+    assert (configuration.lifecycle is not None, configuration.has_bond) == (managed, bond)
+
+
+@pytest.mark.parametrize(
     ("text", "line", "column", "message"),
     [
         ('{"controlLoop": {"periodMS": 3}}', 1, 18, 'unknown key "controlLoop.periodMS"'),
@@ -95,6 +110,8 @@ def test_all_is_optional(tmp_path: Path) -> None:
         ('{"watchdogMs": {"/scan": 100, "scan": 100}}', 1, 2, '"watchdogMs" names scan twice'),
         ('{"onShutdown": ["halt",\n 3]}', 2, 2, '"onShutdown.1" must be a valid string'),
         ('{"onShutdown": "halt"}', 1, 2, '"onShutdown" must be an array'),
+        ('{"lifecycle": 1}', 1, 2, '"lifecycle" must be true, false or an object, such as {"bond": true}'),
+        ('{"lifecycle": {"bound": true}}', 1, 16, 'unknown key "lifecycle.bound"'),
         ('{"package": []}', 1, 2, '"package" must be an object'),
         ('{"package": {"name": "Robot"}}', 1, 14, '"package.name" must match pattern'),
         ('{"supervisor": {"controller": {"launch": {"file": "x"}}}}', 1, 32, "launch.packageName"),

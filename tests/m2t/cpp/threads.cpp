@@ -113,39 +113,42 @@ void who_comes_after_closing_does_not_wait() {
   running.unlock();
 }
 
-/// A callback group with a service, which an executor holds until it is looked for a second time.
-struct Group {
-  std::atomic<bool> free{true};
-  int looks = 0;
-  std::shared_ptr<int> service = std::make_shared<int>(), executor;
-  std::atomic<bool>& can_be_taken_from() { return free; }
-  template <typename Condition>
-  std::shared_ptr<int> find_service_ptrs_if(Condition condition) {
-    if (++looks == 2) executor.reset();
-    const auto found = service;
-    return condition(found) ? found : nullptr;
-  }
-};
-
-void a_group_is_taken_when_nothing_of_it_runs() {
-  Group group;
-  group.free = false;
-  bool done = false;
-  std::thread executor([&] {
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    done = true;
-    group.free = true;
+void siblings_exclude_each_other_and_close_alone() {
+  CallbackGuard guard;
+  const CallbackGuard sibling = guard.sibling();
+  int calls = 0;
+  const auto first = guard([&] { ++calls; });
+  const auto second = sibling([&] { ++calls; });
+  std::thread other([&] {
+    for (int round = 0; round < 1000; ++round) second();
   });
-  withdraw(group);
-  CHECK(done && !group.free);
-  executor.join();
+  for (int round = 0; round < 1000; ++round) first();
+  other.join();
+  CHECK(calls == 2000);
+  guard.close();
+  first();
+  CHECK(calls == 2000);
+  second();
+  CHECK(calls == 2001);
 }
 
-void a_group_is_taken_when_its_executor_has_let_go() {
-  Group group;
-  group.executor = group.service;
-  withdraw(group);
-  CHECK(group.looks == 2 && !group.free);
+void beats_end_with_their_pointer_or_guard() {
+  CallbackGuard guard;
+  CallbackGuard sibling = guard.sibling();
+  int first = 0, second = 0;
+  CallbackGuard::Beat added;
+  CallbackGuard::Beat kept = guard.at_each_beat([&] {
+    ++first;
+    added = sibling.at_each_beat([&] { ++second; });
+  });
+  guard.beat();
+  CHECK(first == 1 && second == 1);
+  kept.reset();
+  guard.beat();
+  CHECK(first == 1 && second == 2);
+  sibling.close();
+  guard.beat();
+  CHECK(second == 2);
 }
 
 std::vector<std::string> lines(const std::string& path) {
@@ -259,8 +262,8 @@ int main(int, char** arguments) {
   closing_waits_for_the_callback_that_runs();
   what_is_made_after_closing_runs();
   who_comes_after_closing_does_not_wait();
-  a_group_is_taken_when_nothing_of_it_runs();
-  a_group_is_taken_when_its_executor_has_let_go();
+  siblings_exclude_each_other_and_close_alone();
+  beats_end_with_their_pointer_or_guard();
   a_log_is_whole_and_in_order(folder + "/whole");
   a_log_tells_of_an_event_at_once(folder + "/at_once");
   a_disk_that_hangs_delays_nobody(folder + "/pipe");

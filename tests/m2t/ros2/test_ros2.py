@@ -17,7 +17,7 @@ from catkin_pkg.package import parse_package_string
 from ruamel.yaml import YAML
 
 import robosc
-from robosc.language.configuration import Configuration, Package
+from robosc.language.configuration import Configuration, Lifecycle, Package
 from robosc.language.configuration.names import absolute_names
 from robosc.m2t.targets import TARGETS
 from tests.m2t.conftest import differences
@@ -42,7 +42,7 @@ def porter_files(porter: robosc.Models, porter_settings: Configuration) -> dict[
 
 @pytest.fixture(scope="module")
 def managed_files(porter: robosc.Models, porter_settings: Configuration) -> dict[str, str]:
-    managed = {"lifecycle": True, "package": Package(name="managed_porter")}
+    managed = {"lifecycle": Lifecycle(bond=True), "package": Package(name="managed_porter")}
     return robosc.generate("ros2", porter, porter_settings.model_copy(update=managed))
 
 
@@ -68,6 +68,8 @@ def test_what_is_special_in_a_managed_node(
         "CHANGELOG.rst",  # its title is underlined
         "CMakeLists.txt",
         "README.md",
+        "include/robosc_ros2/bond.hpp",
+        "include/robosc_ros2/lifecycle_services.hpp",
         "include/robosc_ros2/managed_node.hpp",
         "launch/managed_porter.launch.py",
         "package.xml",
@@ -98,11 +100,12 @@ def test_package_lists_what_services_actions_and_managed_nodes_need(
     package = parse_package_string(porter_files["package.xml"])
     assert {build_depend.name for build_depend in package.build_depends} == used
     managed = parse_package_string(managed_files["package.xml"])
-    assert {build_depend.name for build_depend in managed.build_depends} == used | {"rclcpp_lifecycle"}
+    used |= {"bond", "lifecycle_msgs", "rclcpp_lifecycle"}
+    assert {build_depend.name for build_depend in managed.build_depends} == used
     launching = {exec_depend.name for exec_depend in managed.exec_depends} - {
         build_depend.name for build_depend in managed.build_depends
     }
-    assert launching == {"launch", "launch_ros", "lifecycle_msgs", "python3-yaml"}
+    assert launching == {"launch", "launch_ros", "python3-yaml"}
 
 
 @pytest.mark.parametrize("name", ["courier", "managed"])

@@ -54,6 +54,20 @@ def test_shutdown_while_the_goal_brakes(guarded: Scout) -> None:
     server.do("end", number=goal, how="cancelled")
 
 
+def test_shutdown_while_the_server_refuses(guarded: Scout) -> None:
+    if guarded.version == 1:
+        pytest.skip("a server of ROS 1 can't refuse a cancel")
+    server, goal = under_way(guarded)
+    server.do("on_cancel", answer="refuse")
+    os.kill(guarded.process.pid, signal.SIGINT)
+    assert guarded.process.wait(PATIENCE) == 0
+    server.wait("cancel", value=goal)
+    guarded.until_says(
+        None, "/travel: the goal has not ended when this node ends: the server refuses to cancel the goal"
+    )
+    server.do("end", number=goal, how="succeeded")
+
+
 def test_shutdown_before_acceptance(guarded: Scout) -> None:
     guarded.rest()
     server = guarded.serve()

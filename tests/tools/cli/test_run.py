@@ -36,6 +36,14 @@ def test_names_the_repair_where_ros_is_missing(options: list[str]) -> None:
     assert "Traceback" not in done.stderr
 
 
+def test_a_lifecycle_is_not_there(tmp_path: Path) -> None:
+    configuration = tmp_path / "config.json"
+    configuration.write_text('{"lifecycle": true, "onShutdown": ["halt"]}')
+    done = run(MODEL, "--config", configuration, blocked="rclpy")
+    assert "config.json:1:2: warning" in done.stdout
+    assert '"lifecycle" has no effect on `run`: its node is always active' in done.stdout
+
+
 def test_an_error_in_the_model_comes_first(tmp_path: Path) -> None:
     broken = tmp_path / "broken.rscd"
     broken.write_text("robot Broken { component A { behaviour { } } }")

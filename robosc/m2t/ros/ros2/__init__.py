@@ -106,7 +106,9 @@ class Ros2:
             libraries.append("rosidl_typesupport_introspection_cpp")
         if configuration.lifecycle:
             libraries.append("rclcpp_lifecycle")
-            started.append("lifecycle_msgs")
+            types.add("lifecycle_msgs")
+        if configuration.has_bond:
+            types.add("bond")
         return ControllerValues(
             headers=self._headers(node, used.reports),
             build_tool=_BUILD_TOOL,

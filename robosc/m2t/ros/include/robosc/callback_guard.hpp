@@ -3,12 +3,11 @@
 #define ROBOSC_CALLBACK_GUARD_HPP_
 
 #include <atomic>
-#include <chrono>
 #include <cstdint>
 #include <functional>
+#include <list>
 #include <memory>
 #include <mutex>
-#include <thread>
 #include <utility>
 
 #include "robosc/version.hpp"
@@ -26,6 +25,9 @@ class CallbackGuard {
   CallbackGuard& operator=(const CallbackGuard&) = delete;
   ~CallbackGuard() { close(); }
 
+  /// A guard to close on its own. Its callbacks and those of this guard exclude each other.
+  CallbackGuard sibling() const { return CallbackGuard(shared_); }
+
   /// The function, without effect if the guard is closed after this call.
   template <typename Function>
   auto operator()(Function function) const {
@@ -33,48 +35,59 @@ class CallbackGuard {
   }
 
   /// While you hold this lock, no guarded callback runs in another thread.
-  std::unique_lock<std::recursive_mutex> hold() const { return std::unique_lock<std::recursive_mutex>(state_->mutex); }
+  std::unique_lock<std::recursive_mutex> hold() const { return std::unique_lock<std::recursive_mutex>(shared_->mutex); }
 
   void close() {
-    ++state_->closed;  // Counts before it locks: new callbacks skip the lock and can't starve this thread.
+    ++*closed_;  // Counts before it locks: new callbacks skip the lock and can't starve this thread.
     const auto lock = hold();
   }
 
+  /// A function that each `beat` calls. It ends with the last copy of this pointer, or when the guard is closed.
+  using Beat = std::shared_ptr<const std::function<void()>>;
+  Beat at_each_beat(std::function<void()> function) const {
+    const auto lock = hold();
+    const auto beat = std::make_shared<const std::function<void()>>((*this)(std::move(function)));
+    shared_->beats.push_back(beat);
+    return beat;
+  }
+
+  /// Calls the functions of this guard and its siblings.
+  void beat() const {
+    const auto lock = hold();
+    auto& beats = shared_->beats;
+    for (auto next = beats.begin(); next != beats.end();) {
+      if (const Beat beat = next->lock()) {
+        (*beat)();
+        ++next;
+      } else {
+        next = beats.erase(next);
+      }
+    }
+  }
+
  private:
-  struct State {
+  struct Shared {
     std::recursive_mutex mutex;
-    std::atomic<std::uint64_t> closed{0};  ///< The number of calls of `close`.
+    std::list<std::weak_ptr<const std::function<void()>>> beats;
   };
+
+  explicit CallbackGuard(std::shared_ptr<Shared> shared) : shared_(std::move(shared)) {}
 
   template <typename... Arguments>
   std::function<void(Arguments...)> guarded(std::function<void(Arguments...)> function) const {
     const auto lock = hold();
-    return [state = state_, closed = state_->closed.load(), function = std::move(function)](Arguments... arguments) {
-      if (state->closed != closed) return;
-      const std::lock_guard<std::recursive_mutex> running(state->mutex);
-      if (state->closed == closed) function(std::forward<Arguments>(arguments)...);
+    return [shared = shared_, closed = closed_, open = closed_->load(),
+            function = std::move(function)](Arguments... arguments) {
+      if (*closed != open) return;
+      const std::lock_guard<std::recursive_mutex> running(shared->mutex);
+      if (*closed == open) function(std::forward<Arguments>(arguments)...);
     };
   }
 
-  std::shared_ptr<State> state_ = std::make_shared<State>();
+  std::shared_ptr<Shared> shared_ = std::make_shared<Shared>();
+  /// The number of calls of `close`.
+  std::shared_ptr<std::atomic<std::uint64_t>> closed_ = std::make_shared<std::atomic<std::uint64_t>>(0);
 };
-
-/// Takes a callback group from its executor for good, once none of its callbacks runs. The services that rclcpp adds to
-/// the group (for parameters and the lifecycle) can't be guarded. The group must not become taken while the executor
-/// selects a callback: rclcpp asserts that. So the function first lets the executor release the group's services. The
-/// executor does so when it learns that the node was removed. Then only their owner and this function refer to them. An
-/// executor cannot release them while it runs this function or another callback. So both waits are bounded.
-template <typename Group>
-void withdraw(Group& group) {
-  const auto until = [start = std::chrono::steady_clock::now()](std::chrono::milliseconds patience, auto condition) {
-    while (!condition() && std::chrono::steady_clock::now() - start < patience) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-  };
-  const auto held = [](const auto& service) { return service.use_count() > 2; };
-  until(std::chrono::milliseconds(50), [&] { return group.find_service_ptrs_if(held) == nullptr; });
-  until(std::chrono::seconds(5), [&] { return group.can_be_taken_from().exchange(false); });
-}
 
 }  // namespace ROBOSC_VERSION
 }  // namespace robosc

@@ -41,7 +41,8 @@ class ActionProxy : public GoalProxy<Countdown, typename Type::Goal, typename Ty
         guard_(guard),
         clock_(waiting_clock(node)),
         timeout_(timeout),
-        servers_(node, robot_side) {
+        servers_(node, robot_side),
+        look_(node, guard, kLook, [this] { look_after(); }) {
     const std::string inside = controller_side + "/_action/", outside = robot_side + "/_action/";
     const rclcpp::QoS lasting = rclcpp::QoS(1).transient_local();
 
@@ -72,8 +73,6 @@ class ActionProxy : public GoalProxy<Countdown, typename Type::Goal, typename Ty
         guard([this](std::shared_ptr<rmw_request_id_t> caller, std::shared_ptr<typename CancelGoal::Request> request) {
           on_cancel(*caller, std::move(request));
         }));
-    timer_ = rclcpp::create_timer(&node, clock_, kLook, guard([this] { look_after(); }));
-    timer_->cancel();
   }
 
  private:
@@ -108,7 +107,7 @@ class ActionProxy : public GoalProxy<Countdown, typename Type::Goal, typename Ty
       waiting_for_result_.clear();
     });
     if (admitted) {
-      timer_->reset();
+      look_.start();
       this->look();
     } else {
       answer_goal(caller, typename SendGoal::Response());
@@ -196,8 +195,8 @@ class ActionProxy : public GoalProxy<Countdown, typename Type::Goal, typename Ty
 
   void look_after() {
     forget_cancels(clock_->now());
-    if (!this->running() && cancels_.empty()) timer_->cancel();
     this->look();
+    if (this->running() || !cancels_.empty()) look_.start();
   }
 
   bool is_canceling() override { return status_ == Status::STATUS_CANCELING; }
@@ -259,7 +258,7 @@ class ActionProxy : public GoalProxy<Countdown, typename Type::Goal, typename Ty
         });
     if (!sent) return false;
     cancels_.push_back({cancel_number_, *sent, caller, clock_->now() + timeout_});
-    timer_->reset();
+    look_.start();
     return true;
   }
 
@@ -310,6 +309,7 @@ class ActionProxy : public GoalProxy<Countdown, typename Type::Goal, typename Ty
   rclcpp::Clock::SharedPtr clock_;
   rclcpp::Duration timeout_;
   ActionServers servers_;
+  Countdown look_;
   std::int8_t status_ = Status::STATUS_UNKNOWN;  ///< Status of the current goal, as the robot reports it.
   std::shared_ptr<rclcpp::Client<SendGoal>> goal_client_;
   std::shared_ptr<rclcpp::Client<GetResult>> result_client_;
@@ -321,7 +321,6 @@ class ActionProxy : public GoalProxy<Countdown, typename Type::Goal, typename Ty
   std::shared_ptr<rclcpp::Service<SendGoal>> goal_service_;
   std::shared_ptr<rclcpp::Service<GetResult>> result_service_;
   std::shared_ptr<rclcpp::Service<CancelGoal>> cancel_service_;
-  rclcpp::TimerBase::SharedPtr timer_;
   Id id_ = {};
   rmw_request_id_t caller_ = {};
   std::shared_ptr<typename SendGoal::Request> request_;

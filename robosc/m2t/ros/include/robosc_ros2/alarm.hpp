@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <cstdint>
-#include <functional>
 #include <utility>
 
 #include <rclcpp/rclcpp.hpp>
@@ -22,49 +21,31 @@ class Alarm final : public Timeouts {
  public:
   template <typename Node>
   Alarm(Node& node, const CallbackGuard& guard, Engine engine)
-      : Timeouts(std::move(engine), !waiting_clock(node)->started()), clock_(waiting_clock(node)) {
-    const auto call = guard([this] {
-      cancel();
-      ring();
-    });
-    const bool simulated = clock_ == node.get_clock();
-    plan_ = [&node, simulated, call, this](std::chrono::milliseconds left) -> rclcpp::TimerBase::SharedPtr {
-      if (simulated) return rclcpp::create_timer(&node, clock_, left, call);
-      return node.create_wall_timer(left, call);
-    };
-    // Timers run from the start of the clock, even without an event at that moment.
-    if (!clock_->started()) {
-      begin_ = node.create_wall_timer(kLook, guard([this] {
-                                        if (!clock_->started()) return;
-                                        begin_->cancel();
-                                        at();
-                                        wait();
-                                      }));
-    }
-  }
+      : Timeouts(std::move(engine), !waiting_clock(node)->started()),
+        clock_(waiting_clock(node)),
+        begun_(clock_->started()),
+        next_(node, guard, std::chrono::milliseconds(0), [this] { ring(); }),
+        beat_(guard.at_each_beat([this] {
+          // Timers run from the start of the clock, even without an event at that moment.
+          if (begun_ || !clock_->started()) return;
+          begun_ = true;
+          at();
+          wait();
+        })) {}
 
   Alarm(const Alarm&) = delete;
   Alarm& operator=(const Alarm&) = delete;
-  ~Alarm() override { cancel(); }
 
  private:
   std::int64_t nanoseconds() const override { return clock_->now().nanoseconds(); }
   bool has_begun() const override { return clock_->started(); }
 
-  void set(std::chrono::milliseconds left) override {
-    cancel();
-    timer_ = plan_(left);
-  }
-
-  void cancel() {
-    if (timer_) timer_->cancel();
-    timer_.reset();
-  }
+  void set(std::chrono::milliseconds left) override { next_.start(left); }
 
   rclcpp::Clock::SharedPtr clock_;
-  std::function<rclcpp::TimerBase::SharedPtr(std::chrono::milliseconds)> plan_;
-  rclcpp::TimerBase::SharedPtr timer_;
-  rclcpp::TimerBase::SharedPtr begin_;
+  bool begun_;
+  Countdown next_;
+  CallbackGuard::Beat beat_;
 };
 
 }  // namespace ROBOSC_VERSION

@@ -38,6 +38,7 @@ class ControllerNode : public GuardedNode<Node> {
     {
       const auto lock = this->guard_.hold();
       leave();
+      finalize();
     }
     GuardedNode<Node>::close();
   }
@@ -54,6 +55,8 @@ class ControllerNode : public GuardedNode<Node> {
   virtual void halt() = 0;
   /// Other steps before the end of the node.
   virtual void finish() {}
+  /// Ends the lifecycle of the node, if it has one.
+  virtual void finalize() {}
   /// Handles the end of a period.
   virtual void tick() = 0;
 
@@ -111,9 +114,13 @@ class ControllerNode : public GuardedNode<Node> {
     return monitor_ && monitor_->has_other_type(name) ? "the server has another type" : why;
   }
 
-  /// Starts the ticks.
+  /// Starts the ticks. The period is the same each time.
   void start(std::chrono::milliseconds period) {
-    const auto tick = this->guard_([this] { this->tick(); });
+    ticking_ = true;
+    if (timer_) return;
+    const auto tick = this->services_guard_([this] {
+      if (ticking_) this->tick();
+    });
     if (this->get_parameter("use_sim_time").as_bool()) {
       timer_ = rclcpp::create_timer(this, this->get_clock(), period, tick);
     } else {
@@ -131,10 +138,11 @@ class ControllerNode : public GuardedNode<Node> {
         monitor_->stop();
       }
     };
-    shutdown_hook_.emplace(*this, end, [this] {
+    shutdown_hook_.emplace(*this, this->guard_, end, [this] {
       const auto lock = this->guard_.hold();
       if (waits()) return true;
       leave();
+      finalize();
       return false;
     });
   }
@@ -151,6 +159,7 @@ class ControllerNode : public GuardedNode<Node> {
   bool active_ = false;
   std::optional<GraphMonitor> monitor_;
   std::optional<Durabilities> durabilities_;
+  bool ticking_ = false;
   rclcpp::TimerBase::SharedPtr timer_;
 
  private:
@@ -161,7 +170,6 @@ class ControllerNode : public GuardedNode<Node> {
     rclcpp::SubscriptionOptions options;
     options.qos_overriding_options = overrides;
     options.use_default_callbacks = false;
-    subscription.reset();
     subscription = this->template create_subscription<Message>(topic, quality, this->guard_(heard), options);
     monitor().hear(topic, rosidl_generator_traits::name<Message>(), subscription->get_actual_qos());
   }

@@ -16,6 +16,8 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
+/// The interval between beats of a node, in which its countdowns expire.
+inline constexpr std::chrono::milliseconds kBeat(10);
 /// The interval between checks of a condition.
 inline constexpr std::chrono::milliseconds kLook(20);
 
@@ -28,56 +30,51 @@ rclcpp::Clock::SharedPtr waiting_clock(Node& node) {
 
 /// Calls a function once, a given time after each start: on the steady clock, or in ROS time with `use_sim_time`.
 ///
-/// An events executor queues the calls of timers that have expired. Such a call may run after the countdown was stopped
-/// or started again. Then it has no effect.
+/// It expires at a beat of the guard, and has no timer of its own. The events executor of Jazzy delays other timers
+/// when one is reset or canceled, and may never call a timer that takes the place of a destroyed one.
 class Countdown {
  public:
   template <typename Node>
   Countdown(Node& node, const CallbackGuard& guard, std::chrono::milliseconds time, std::function<void()> over)
-      : over_(std::move(over)), time_(time), clock_(waiting_clock(node)) {
-    const auto expire = guard([this] {
-      if (!running() || is_early()) return;
-      stop();
-      if (began_) {
-        over_();
-      } else {
-        start();
-      }
-    });
-    if (node.get_parameter("use_sim_time").as_bool()) {
-      timer_ = rclcpp::create_timer(&node, clock_, time, expire);
-    } else {
-      timer_ = node.create_wall_timer(time, expire);
-    }
-    stop();
-  }
+      : over_(std::move(over)),
+        time_(time),
+        clock_(waiting_clock(node)),
+        beat_(guard.at_each_beat([this] { look(); })) {}
 
   Countdown(const Countdown&) = delete;
   Countdown& operator=(const Countdown&) = delete;
-  ~Countdown() { stop(); }
 
   /// Starts or restarts with the full time.
-  void start() {
+  void start() { start(time_); }
+  /// The same with another time.
+  void start(std::chrono::nanoseconds time) {
+    running_ = true;
+    current_ = time;
     began_ = clock_->started();
     started_ = clock_->now().nanoseconds();
-    timer_->reset();
   }
-  void stop() { timer_->cancel(); }
-  bool running() const { return !timer_->is_canceled(); }
+  void stop() { running_ = false; }
+  bool running() const { return running_; }
 
  private:
-  /// Whether the time since the last start has not elapsed. After a backward jump of the clock, only the timer decides.
-  bool is_early() const {
-    const std::int64_t passed = clock_->now().nanoseconds() - started_;
-    return passed >= 0 && passed < std::chrono::nanoseconds(time_).count();
+  void look() {
+    if (!running_) return;
+    const std::int64_t now = clock_->now().nanoseconds();
+    // The first message starts a clock of simulated time. No time elapses before it, or when the clock jumps back.
+    if (now < started_ || (!began_ && clock_->started())) return start(current_);
+    if (!began_ || now - started_ < current_.count()) return;
+    stop();
+    over_();
   }
 
   std::function<void()> over_;
-  std::chrono::milliseconds time_;
+  std::chrono::nanoseconds time_;
+  std::chrono::nanoseconds current_ = time_;
   rclcpp::Clock::SharedPtr clock_;
+  bool running_ = false;
+  bool began_ = true;
   std::int64_t started_ = 0;  ///< In nanoseconds.
-  bool began_ = true;         ///< The first message starts a clock of simulated time. No time elapses before it.
-  rclcpp::TimerBase::SharedPtr timer_;
+  CallbackGuard::Beat beat_;
 };
 
 }  // namespace ROBOSC_VERSION

@@ -3,7 +3,6 @@
 #define ROBOSC_ROS2_DURABILITIES_HPP_
 
 #include <algorithm>
-#include <chrono>
 #include <functional>
 #include <optional>
 #include <string>
@@ -28,13 +27,12 @@ class Durabilities {
       : publishers_([&node](const std::string& topic) { return node.get_publishers_info_by_topic(topic); }),
         // Created here: the first event of a context takes its locks in another order than closing does.
         graph_(node.get_graph_event()),
-        timer_(node.create_wall_timer(std::chrono::milliseconds(20), guard([this] {
-                                        if (graph_->check_and_clear()) look();
-                                      }))) {}
+        beat_(guard.at_each_beat([this] {
+          if (graph_->check_and_clear()) look();
+        })) {}
 
   Durabilities(const Durabilities&) = delete;
   Durabilities& operator=(const Durabilities&) = delete;
-  ~Durabilities() { timer_->cancel(); }
 
   /// Calls `changed` whenever a topic becomes lasting or no longer is. `lasting`: the known value, or nothing if
   /// unknown.
@@ -74,7 +72,7 @@ class Durabilities {
   std::function<std::vector<rclcpp::TopicEndpointInfo>(const std::string&)> publishers_;
   std::vector<Topic> topics_;
   rclcpp::Event::SharedPtr graph_;
-  rclcpp::TimerBase::SharedPtr timer_;
+  CallbackGuard::Beat beat_;
 };
 
 }  // namespace ROBOSC_VERSION

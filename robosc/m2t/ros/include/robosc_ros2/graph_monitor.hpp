@@ -30,19 +30,18 @@ class GraphMonitor {
         self_(node.get_fully_qualified_name()),
         graph_(node.get_node_graph_interface()),
         services_(node.get_node_services_interface()),
-        timer_(node.create_wall_timer(std::chrono::seconds(1), guard([this] {
-                                        if (!stopped_) look();
-                                      }))) {}
+        beat_(guard.at_each_beat([this] {
+          const auto now = std::chrono::steady_clock::now();
+          if (now < next_) return;
+          next_ = now + std::chrono::seconds(1);
+          look();
+        })) {}
 
   GraphMonitor(const GraphMonitor&) = delete;
   GraphMonitor& operator=(const GraphMonitor&) = delete;
-  ~GraphMonitor() { stop(); }
 
   /// Stops the checks. A node can't query the graph after its context is closed.
-  void stop() {
-    stopped_ = true;  // An events executor may have queued a check.
-    timer_->cancel();
-  }
+  void stop() { beat_.reset(); }
 
   /// Adds a topic that the node receives, or updates its quality of service.
   void hear(const std::string& topic, const std::string& type, const rclcpp::QoS& quality) {
@@ -248,8 +247,8 @@ class GraphMonitor {
   std::map<std::string, std::vector<std::string>> faults_;
   std::set<std::string> other_types_;
   std::set<std::string> told_;
-  bool stopped_ = false;
-  rclcpp::TimerBase::SharedPtr timer_;
+  std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now() + std::chrono::seconds(1);
+  CallbackGuard::Beat beat_;
 };
 
 }  // namespace ROBOSC_VERSION

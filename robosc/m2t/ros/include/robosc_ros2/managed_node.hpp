@@ -3,13 +3,16 @@
 #define ROBOSC_ROS2_MANAGED_NODE_HPP_
 
 #include <exception>
+#include <string>
 
+#include <lifecycle_msgs/msg/state.hpp>
 #include <rclcpp/rclcpp.hpp>
 #include <rclcpp_lifecycle/lifecycle_node.hpp>
 #include <rclcpp_lifecycle/lifecycle_publisher.hpp>
 
 #include "robosc/version.hpp"
 #include "robosc_ros2/controller_node.hpp"
+#include "robosc_ros2/lifecycle_services.hpp"
 
 namespace robosc {
 inline namespace ROBOSC_VERSION {
@@ -68,7 +71,14 @@ class ManagedNode : public ControllerNode<rclcpp_lifecycle::LifecycleNode> {
   }
 
  protected:
-  using ControllerNode::ControllerNode;
+  ManagedNode(const std::string& name, const rclcpp::NodeOptions& options) : ControllerNode(name, options, false) {
+    serve_lifecycle(services_, *this, services_guard_);
+  }
+
+  /// Takes the last transition while the node can still send.
+  void finalize() override {
+    if (get_current_state().id() != lifecycle_msgs::msg::State::PRIMARY_STATE_FINALIZED) shutdown();
+  }
 
   // Functions that depend on the model.
 
@@ -84,11 +94,13 @@ class ManagedNode : public ControllerNode<rclcpp_lifecycle::LifecycleNode> {
  private:
   void release() {
     guard_.close();
-    timer_.reset();
+    ticking_ = false;
     finish();
     disconnect();
     durabilities_.reset();
     monitor_.reset();
+    // The events executor of Jazzy takes a new subscription for a destroyed one, unless it looks in between.
+    get_node_base_interface()->get_notify_guard_condition().trigger();
   }
 };
 

@@ -30,29 +30,23 @@ inline void flush(rclcpp::PublisherBase& publisher) {
 /// Calls a function once before the context closes, or at the destruction of the node, while it can still send. The
 /// context stays open while the node `waits`. A node that is destroyed before its context does not wait.
 ///
-/// The context closes in a separate thread, so the node's executor calls the function. If no executor runs for a
-/// second, that thread calls it.
+/// The context closes in a separate thread, so a beat of the guard calls the function. If there is none for a second,
+/// that thread calls it.
 class ShutdownHook {
  public:
   template <typename Node>
-  ShutdownHook(
-      Node& node, std::function<void()> function, std::function<bool()> waits = [] { return false; })
+  ShutdownHook(Node& node, const CallbackGuard& guard, std::function<void()> function, std::function<bool()> waits)
       : function_(std::move(function)),
+        waits_(std::move(waits)),
         logger_(node.get_logger()),
-        context_(node.get_node_base_interface()->get_context()) {
-    timer_ = node.create_wall_timer(std::chrono::milliseconds(1), guard_([this, waits = std::move(waits)] {
-                                      if (finished_) return;  // An events executor had this call in its queue.
-                                      served_ = true;
-                                      run();
-                                      if (waits()) return;
-                                      finished_ = true;
-                                      timer_->cancel();
-                                      done_.set_value();
-                                    }));
-    timer_->cancel();
+        context_(node.get_node_base_interface()->get_context()),
+        guard_(guard.sibling()),
+        beat_(guard_.at_each_beat([this] {
+          if (closes_ && !finished_) serve();
+        })) {
     handle_ = context_->add_pre_shutdown_callback([this] {
       const std::future<void> done = done_.get_future();
-      timer_->reset();
+      closes_ = true;
       while (done.wait_for(std::chrono::seconds(1)) != std::future_status::ready) {
         if (!served_.exchange(false)) return run();
       }
@@ -69,6 +63,14 @@ class ShutdownHook {
   }
 
  private:
+  void serve() {
+    served_ = true;
+    run();
+    if (waits_()) return;
+    finished_ = true;
+    done_.set_value();
+  }
+
   void run() {
     if (started_.exchange(true)) return;
     try {
@@ -79,15 +81,17 @@ class ShutdownHook {
   }
 
   std::function<void()> function_;
+  std::function<bool()> waits_;
   rclcpp::Logger logger_;
   rclcpp::Context::SharedPtr context_;
   rclcpp::PreShutdownCallbackHandle handle_;
-  rclcpp::TimerBase::SharedPtr timer_;
+  std::atomic<bool> closes_{false};
   std::atomic<bool> started_{false};
   std::atomic<bool> served_{false};
   bool finished_ = false;  ///< Used by the node's executor only.
   std::promise<void> done_;
   CallbackGuard guard_;
+  CallbackGuard::Beat beat_;
 };
 
 }  // namespace ROBOSC_VERSION
