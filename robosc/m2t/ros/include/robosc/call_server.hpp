@@ -56,7 +56,7 @@ class CallServer {
   /// Refuses all requests at the end of the node.
   void leave() {
     const std::size_t number = waiting_.size() + (open_ ? 1 : 0);
-    if (number > 0) handlers_.warn(std::to_string(number) + " requests have no response when this node ends");
+    if (number > 0) handlers_.warn("requests without a response at the end of this node: " + std::to_string(number));
     if (open_) refuse(*std::exchange(open_, std::nullopt));
     for (const Call& call : std::exchange(waiting_, {})) refuse(call.caller);
   }
