@@ -139,8 +139,16 @@ class Ros:
         if name not in self.clients:
             self.clients[name] = self.node.create_client(service, name)
             self.clients[name].wait_for_service()
-        answer = self.clients[name].call_async(fill(service.Request(), fields))
-        answer.add_done_callback(lambda future: answered(future.result()))
+
+        def send():
+            answer = self.clients[name].call_async(fill(service.Request(), fields))
+            answer.add_done_callback(lambda future: answered(future.result()))
+
+        self._do(send)
+
+    def _do(self, send):
+        """Send in the thread of the executor: a response must not overtake the record of its request in rclpy."""
+        self.executor.create_task(send)
         self.executor.wake()
 
     def start(self, name, kind, fields, accepted, progress, ended, cancelled):
@@ -148,7 +156,7 @@ class Ros:
         if name not in self.clients:
             self.clients[name] = ActionClient(self.node, action, name)
             self.clients[name].wait_for_server()
-        sent = _Sent(cancelled)
+        sent = _Sent(self._do, cancelled)
 
         def decided(future):
             sent.handle = future.result()
@@ -159,23 +167,29 @@ class Ros:
         def finished(future):
             ended(ENDS[future.result().status], future.result().result)
 
-        answer = self.clients[name].send_goal_async(
-            fill(action.Goal(), fields), feedback_callback=lambda message: progress(message.feedback)
-        )
-        answer.add_done_callback(decided)
-        self.executor.wake()
+        def send():
+            answer = self.clients[name].send_goal_async(
+                fill(action.Goal(), fields), feedback_callback=lambda message: progress(message.feedback)
+            )
+            answer.add_done_callback(decided)
+
+        self._do(send)
         return sent
 
 
 class _Sent:
     """A goal that a client sent to the node under test."""
 
-    def __init__(self, cancelled):
+    def __init__(self, do, cancelled):
+        self.do = do
         self.cancelled = cancelled
 
     def cancel(self):
-        answer = self.handle.cancel_goal_async()
-        answer.add_done_callback(lambda future: self.cancelled(bool(future.result().goals_canceling)))
+        def send():
+            answer = self.handle.cancel_goal_async()
+            answer.add_done_callback(lambda future: self.cancelled(bool(future.result().goals_canceling)))
+
+        self.do(send)
 
 
 class _Server(ActionServer):
