@@ -288,9 +288,7 @@ def test_another_server_is_reported(served: Clerk, nodes: Workspace | Runner) ->
     other.process.wait()
 
 
-def test_the_end_of_the_node_aborts_its_goal_and_drops_its_requests(
-    nodes: Workspace | Runner, tmp_path: Path
-) -> None:
+def test_the_end_of_the_node_aborts_its_goal_and_drops_its_requests(nodes: Workspace | Runner, tmp_path: Path) -> None:
     with serving(nodes, tmp_path / "run") as clerk:
         goal = clerk.tour(1)
         assert clerk.accepted(goal)

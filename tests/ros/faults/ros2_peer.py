@@ -151,7 +151,7 @@ class Ros:
         self.executor.create_task(send)
         self.executor.wake()
 
-    def start(self, name, kind, fields, accepted, progress, ended, cancelled):
+    def start(self, name, kind, fields, *, accepted, progress, ended, cancelled):
         action = _find(kind, "action")
         if name not in self.clients:
             self.clients[name] = ActionClient(self.node, action, name)
