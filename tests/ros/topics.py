@@ -2,7 +2,9 @@
 # ruff: noqa: PLC0415  # only one of the two is installed
 
 import importlib
+import re
 import time
+from array import array
 
 
 def connect(version, name):
@@ -16,11 +18,22 @@ def type_of(name):
     return getattr(importlib.import_module(f"{package}.msg"), kind)
 
 
+def element_of(message, name):
+    """Return a new element of a message's array of objects."""
+    if hasattr(message, "_slot_types"):
+        kind = dict(zip(message.__slots__, message._slot_types, strict=True))[name]
+    else:
+        kind = message.get_fields_and_field_types()[name]
+    return type_of(re.search(r"\w+/\w+", kind)[0])()
+
+
 def fill(message, fields):
-    """Set fields of a message from nested dicts."""
+    """Set fields of a message from nested dicts and lists."""
     for name, value in fields.items():
         if isinstance(value, dict):
             fill(getattr(message, name), value)
+        elif isinstance(value, list) and any(isinstance(element, dict) for element in value):
+            setattr(message, name, [fill(element_of(message, name), element) for element in value])
         else:
             setattr(message, name, value)
     return message
@@ -31,7 +44,7 @@ def plain(value):
     if hasattr(value, "__slots__"):
         names = (slot.lstrip("_") for slot in value.__slots__ if slot != "_check_fields")
         return {name: plain(getattr(value, name)) for name in names}
-    if isinstance(value, list):
+    if isinstance(value, (list, tuple, array)):
         return [plain(element) for element in value]
     if isinstance(value, bytes):  # the Python value of a ROS 2 byte
         return int.from_bytes(value, "little")

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from robosc.language.configuration import Configuration
-    from robosc.m2t.ros.node import GeneratedNode
+    from robosc.m2t.ros.node import Client, GeneratedNode, Server
     from robosc.m2t.ros.packages import UsedPackages
 
 #: Topics of an action. ROS 1 remaps these, not the action's own name.
@@ -56,6 +56,8 @@ class Ros1:
     ) -> Ros1Values:
         """Return the template values of a controller; see `Middleware`."""
         libraries = {"rosconsole", "roscpp", "xmlrpcpp", *(["actionlib"] if node.actions else [])}
+        if any(server.is_action for server in node.servers):
+            libraries |= {"actionlib", "actionlib_msgs"}
         built = sorted({*libraries, *used.types})
         tested = ["rosgraph_msgs", "rospy", "rostest"] if tests else []
         return Ros1Values(
@@ -76,7 +78,8 @@ def _names(node: GeneratedNode) -> Iterator[tuple[str, str, str, list[str]]]:
     topics |= {topic.topic: topic.word for topic in node.publishers}
     for topic, word in topics.items():
         yield "topic", word, topic, [""]
-    for service in node.services:
-        yield "service", service.word, service.name, [""]
-    for action in node.actions:
-        yield "action", action.word, action.name, [f"/{part}" for part in _ACTION]
+    ends: list[Client | Server] = [*node.services, *node.actions, *node.servers]
+    for end in ends:
+        is_action = end.interface.kind == rosgraph.InterfaceKind.action
+        parts = [f"/{part}" for part in _ACTION] if is_action else [""]
+        yield "action" if is_action else "service", end.word, end.name, parts
