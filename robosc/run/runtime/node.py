@@ -95,6 +95,7 @@ def _started(name: str, graph: rosgraph.RosGraph, *, shows: bool) -> str:
         ("sends", [publisher.topic for publisher in graph.publishers]),
         ("calls", [client.identifier for client in graph.serviceClients]),
         ("starts", [client.identifier for client in graph.actionClients]),
+        ("serves", [server.identifier for server in (*graph.serviceServers, *graph.actionServers)]),
     )
     connected = "; ".join(f"{verb} {', '.join(dict.fromkeys(names))}" for verb, names in parts if names)
     look = " `robosc view` shows it decide." if shows else ""
