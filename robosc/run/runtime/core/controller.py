@@ -95,7 +95,8 @@ class Controller(EventHandler):
         self._withheld: set[str] = set()
         #: Enabled commands whose data the supervisor forbids.
         self._forbidden: set[str] = set()
-        clients, servers = [*graph.serviceClients, *graph.actionClients], [*graph.serviceServers, *graph.actionServers]
+        clients: list[Client] = [*graph.serviceClients, *graph.actionClients]
+        servers: list[Server] = [*graph.serviceServers, *graph.actionServers]
         self._monitor = GraphMonitor(port, event_loop, clients, servers)
         awaited = {topic.removeprefix("/") for topic in settings.configuration.wait_for}
         #: Topics that commands wait for and that have not been received yet.
@@ -222,8 +223,10 @@ class Controller(EventHandler):
         if not self._stopping:
             self._stopping = True
             self._halt()
-            for server in (*self.services.values(), *self.actions.values()):
-                server.leave()
+            for service in self.services.values():
+                service.leave()
+            for action in self.actions.values():
+                action.leave()
 
     @property
     def busy(self) -> bool:
@@ -271,7 +274,7 @@ class Controller(EventHandler):
         """Return whether a goal of a client can be accepted now: its event would happen. Report data of no use."""
         reception, engine = action.request, self._control.engine
         event = event_name(reception.event)
-        if self._halted:
+        if self._halted or self._unheard:
             return False
         if not engine.enabled(event):
             with self._batch():

@@ -57,7 +57,7 @@ class ServiceServer:
         self._ended = True
         number = len(self._waiting) + (self._open is not None)
         if number:
-            self._warn(f"{number} requests have no response when this node ends")
+            self._warn(f"requests without a response at the end of this node: {number}")
 
     def _open_next(self) -> None:
         if self._waiting and self._open is None and not self._ended:

@@ -64,9 +64,9 @@ if TYPE_CHECKING:
     from robosc.language.configuration.quality import Quality
     from robosc.run.runtime.core.event_handler import EventHandler
     from robosc.run.runtime.core.layer import Layer
-    from robosc.run.runtime.core import servers
     from robosc.run.runtime.core.port import Client, Goal, Message, Server
     from robosc.run.runtime.core.proxies import ActionProxy
+    from robosc.run.runtime.core.servers import ActionServer
     from robosc.run.runtime.ros2.servers import Ros2ActionServer
 
 _PROFILES = {
@@ -393,7 +393,7 @@ class Ros2Node(RunningNode):
         publishers = self.node.get_publishers_info_by_topic(f"{action}/_action/status")
         return frozenset(bytes(publisher.endpoint_gid) for publisher in publishers)
 
-    def _serve_action(self, action: rosgraph.ActionServer, server: servers.ActionServer) -> None:
+    def _serve_action(self, action: rosgraph.ActionServer, server: ActionServer) -> None:
         from robosc.run.runtime.ros2.servers import Ros2ActionServer  # noqa: PLC0415  # few models serve actions
 
         self._served.append(Ros2ActionServer(self, self._types[action.interface], action, server))
