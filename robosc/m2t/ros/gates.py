@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from robosc.m2t.c.comments import string_literal
 from robosc.m2t.c.expressions import CPrinter, integer_type
 from robosc.m2t.ros.names import CppNames
-from robosc.m2t.ros.node import answers
 from robosc.model import engine, rosgraph, sct
+from robosc.model.semantics.component_parts import answers
 from robosc.model.semantics.printing import Printed
 from robosc.model.semantics.roles import plant_of
 
@@ -57,7 +57,7 @@ def gates(graph: rosgraph.RosGraph, node: GeneratedNode, executed: engine.Engine
     sendings += [service.request for service in graph.serviceClients]
     sendings += [action.request for action in graph.actionClients]
     servers = (*graph.serviceServers, *graph.actionServers)
-    sendings += [sending for server in servers for _, _, sending in answers(server)]
+    sendings += [sending for server in servers for sending in answers(server).values()]
     messages = [message for _, message in node.sent]
     printer = _Printer(CppNames(graph))
     events = {event.event: event for event in executed.events}

@@ -15,6 +15,7 @@ from robosc.m2t.ros.names import CppNames
 from robosc.model import engine, rosgraph, sct
 from robosc.model import expression as ex
 from robosc.model.reflection import tree
+from robosc.model.semantics.component_parts import answers
 from robosc.model.semantics.definition import reported_variables
 from robosc.model.semantics.messages import (
     EACH,
@@ -44,6 +45,8 @@ if TYPE_CHECKING:
 
     from robosc.model.semantics.messages import Path
 
+#: Method of an action's server that sends an answer.
+_ANSWERED_BY = {"feedback": "publish", "response": "succeed", "error": "abort", "canceled": "canceled"}
 #: Method that writes a field unchanged.
 _HAND_ON = "hand_on"
 
@@ -374,7 +377,7 @@ class GeneratedNode:
             outside |= {action.request.event, action.feedback.event, action.response.event}
             outside |= {action.error.event, action.canceled.event}
         for server in (*graph.serviceServers, *graph.actionServers):
-            outside |= {server.request.event, *(sending.event for _, _, sending in answers(server))}
+            outside |= {server.request.event, *(sending.event for sending in answers(server).values())}
             outside |= {server.cancel} if isinstance(server, rosgraph.ActionServer) else set()
         self.internal = [self._handler(event) for event in self._reactions if event not in outside]
         shown = reported_variables(graph)
@@ -660,8 +663,12 @@ class GeneratedNode:
             self._reception(server.request),
             None if cancel is None else self._handler(cancel),
             [
-                Answer(method, kind, self._message(sending, f"{word}_{sending.event.name.removeprefix('c_')}"))
-                for method, kind, sending in answers(server)
+                Answer(
+                    _ANSWERED_BY[answer] if isinstance(server, rosgraph.ActionServer) else "respond",
+                    "feedback" if answer == "feedback" else "response",
+                    self._message(sending, f"{word}_{answer}"),
+                )
+                for answer, sending in answers(server).items()
             ],
         )
 
@@ -747,20 +754,6 @@ class GeneratedNode:
             values = [_value(part, element, printer) for part in value.elements]
             return "set_elements", name, f"std::initializer_list<{self._type(element)}>{{{', '.join(values)}}}"
         return "set_elements" if is_structured(kind) else "set", name, _value(value, kind, printer)
-
-
-def answers(server: rosgraph.ServiceServer | rosgraph.ActionServer) -> list[tuple[str, str, rosgraph.Sending]]:
-    """Return the answers of a server that exist: method of the class, kind of data, and data."""
-    if isinstance(server, rosgraph.ServiceServer):
-        rows = [("respond", "response", server.response)]
-    else:
-        rows = [
-            ("publish", "feedback", server.feedback),
-            ("succeed", "response", server.response),
-            ("abort", "response", server.error),
-            ("canceled", "response", server.canceled),
-        ]
-    return [(method, kind, sending) for method, kind, sending in rows if sending is not None]
 
 
 def _value(value: ex.Expression, kind: ex.Type, printer: CppPrinter) -> str:
