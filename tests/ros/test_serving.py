@@ -83,18 +83,18 @@ class Clerk:
 
 
 @contextmanager
-def serving(nodes: Workspace | Runner, folder: Path) -> Iterator[Clerk]:
-    """Run the node with its peer until it listens."""
+def serving(nodes: Workspace | Runner, folder: Path, *parameters: str) -> Iterator[Clerk]:
+    """Run the node with its peer until it listens; `parameters` are as `name:=value`."""
     with middleware(nodes, folder) as processes:
-        log = f"event_log:={folder / 'events.jsonl'}"
+        values = [f"event_log:={folder / 'events.jsonl'}", *parameters]
         if isinstance(nodes, Runner):
             settings = SERVING / "controller-config.json"
-            command: list[Any] = nodes.command(SERVING / "clerk.rscd", log, configuration=settings, own_types=True)
+            command: list[Any] = nodes.command(SERVING / "clerk.rscd", *values, configuration=settings, own_types=True)
         elif nodes.ros.version == 1:
             executable = nodes.folder / "devel/lib/clerk_controller/clerk_controller"
-            command = [executable, "__name:=clerk_controller", f"_{log}"]
+            command = [executable, "__name:=clerk_controller", *(f"_{value}" for value in values)]
         else:
-            command = nodes.node("clerk_controller", log)
+            command = nodes.node("clerk_controller", *values)
         node = processes.start("node", command)
         world = Peer(processes, nodes.ros.python, nodes.ros.version, "world")
         for topic in TOPICS:

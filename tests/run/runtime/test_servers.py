@@ -188,7 +188,10 @@ def test_a_cancel_comes_too_late_if_its_goal_ends_meanwhile(desk: Desk) -> None:
 
 
 def test_a_cancel_that_no_transition_names_is_rejected(desk: Desk) -> None:
-    assert desk.send("/tour", poses=POSES) is not None
+    assert desk.send(order=1) is not None
+    client = desk.send("/tour", poses=POSES)
+    assert client is not None
+    assert client.fate == []
     assert not desk.cancel("/tour")
 
 
@@ -222,6 +225,16 @@ def test_a_request_against_an_assumption_is_dropped_and_stops_the_robot(desk: De
     assert len(client.fate) == 1
     assert desk.send("/tour", poses=POSES) is None
     assert caller.responses == []
+
+
+def test_after_a_dropped_request_comes_the_next_one(tmp_path: Path) -> None:
+    desk = Desk(tmp_path, Configuration(on_shutdown=[], on_violation="report"))
+    assert desk.send(order=1) is not None
+    assert desk.cancel()
+    dropped = desk.call("/costs")
+    desk.hear("end", data=3)
+    assert desk.call("/costs").responses == [{"costs": [0.0]}]
+    assert dropped.responses == []
 
 
 def test_a_silent_sensor_holds_answers_back(tmp_path: Path) -> None:
@@ -278,6 +291,8 @@ def test_a_node_without_an_open_goal_ends_at_once(desk: Desk) -> None:
     desk.hear("end", data=1)
     desk.controller.stop()
     assert not desk.controller.busy
+    desk.call(a=1)
+    assert desk.events(of="service_add") == []
 
 
 def test_another_server_of_the_name_is_reported(desk: Desk) -> None:
