@@ -30,6 +30,6 @@ def test_a_stopped_robot_answers_nobody_and_rejects_goals(nodes: Workspace | Run
             # In ROS 1, the new server replaces the node.
             clerk.world.do("serve", name="/ring", kind=RING)
             clerk.world.do("act", name="/tour", kind=TOUR)
-            for name in ("/ring", "/tour"):
-                rivals = f"{name}: /clerk_controller and /world serve it: only one answer counts"
-                clerk.processes.wait_until(says(rivals), rivals)
+            rivals = "/ring: /clerk_controller and /world serve it: only one answer counts"
+            for text in (rivals, rivals.replace("/ring", "/tour")):
+                clerk.processes.wait_until(says(text), text)
