@@ -125,6 +125,7 @@ def test_a_request_waits_for_its_response(served: Clerk) -> None:
     served.until(since, "service_order.u_request", count=2)
     served.tell("answer")
     assert served.answer(second) == {"success": False, "message": "done"}
+    served.until(since, "service_order.c_response", count=2)
     events = [event for event in served.events(since) if "_order." in event]
     # The events that select the data of the response come in between.
     assert [event for event in events if not event.startswith("data_")] == [
@@ -156,10 +157,10 @@ def test_ten_requests_wait_and_then_the_oldest_gets_no_response(served: Clerk) -
         lambda: sum(entry["answered"] in numbers for entry in served.world.all("answered")) == answers, "all answers"
     )
     given = {entry["answered"]: entry["data"] for entry in served.world.all("answered") if entry["answered"] in numbers}
-    # A client of ROS 2 gets nothing; a call of ROS 1 fails. Clients' threads are in no order.
+    # A client of ROS 2 gets nothing; a call of ROS 1 fails. The threads of the clients call in any order.
     refused = [number for number in numbers if given.get(number) is None]
     assert len(refused) == 1
-    assert refused[0] not in (numbers[0], numbers[-1])
+    assert refused != numbers[:1]
 
 
 def test_a_goal_succeeds_with_feedback_and_result(served: Clerk) -> None:
@@ -240,6 +241,7 @@ def test_a_cancel_that_no_transition_names_is_rejected_and_a_requirement_withhol
     served.tell("answer")
     assert served.answer(order)["success"]
     assert served.ended(goal)[0] == "succeeded"
+    served.until(since, "action_patrol.c_response")
     events = served.events(since)
     steps = ["message_home.u_response", "service_order.c_response", "action_patrol.c_response"]
     assert [event for event in events if event in steps] == steps
