@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from contextlib import contextmanager
 from dataclasses import dataclass
+from enum import IntEnum
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -24,8 +25,18 @@ if TYPE_CHECKING:
 TOPICS = ("answer", "close", "open", "arrival", "finish", "collapse", "halted", "home")
 TOUR, PATROL = "nav2_msgs/FollowWaypoints", "nav2_msgs/NavigateToPose"
 ORDER, RING = "std_srvs/SetBool", "std_srvs/Trigger"
+MANAGED = "managed_clerk"
 #: As in the model: with this number of loops the controller rejects a tour.
 LONG = 5
+
+
+class Transition(IntEnum):
+    """Transitions of managed nodes, with the numbers of lifecycle_msgs."""
+
+    CONFIGURE = 1
+    CLEAN_UP = 2
+    ACTIVATE = 3
+    DEACTIVATE = 4
 
 
 @dataclass
@@ -82,10 +93,20 @@ class Clerk:
         end = self.world.wait("ended", value=number)
         return end["how"], end["data"]
 
+    def change(self, *transitions: Transition) -> None:
+        """Change the state of a managed node."""
+        for transition in transitions:
+            fields = {"transition": {"id": int(transition)}}
+            kind = "lifecycle_msgs/ChangeState"
+            number = self.world.do("call", name=f"/{MANAGED}/change_state", kind=kind, fields=fields)
+            assert self.answer(number)["success"]
+
 
 @contextmanager
-def serving(nodes: Workspace | Runner, folder: Path, *parameters: str) -> Iterator[Clerk]:
-    """Run the node with its peer until it listens; `parameters` are as `name:=value`."""
+def serving(
+    nodes: Workspace | Runner, folder: Path, *parameters: str, package: str = "clerk_controller"
+) -> Iterator[Clerk]:
+    """Run the node with its peer until it listens. Configure a managed node. `parameters` are as `name:=value`."""
     with middleware(nodes, folder) as processes:
         values = [f"event_log:={folder / 'events.jsonl'}", *parameters]
         if isinstance(nodes, Runner):
@@ -95,15 +116,18 @@ def serving(nodes: Workspace | Runner, folder: Path, *parameters: str) -> Iterat
             executable = nodes.folder / "devel/lib/clerk_controller/clerk_controller"
             command = [executable, "__name:=clerk_controller", *(f"_{value}" for value in values)]
         else:
-            command = nodes.node("clerk_controller", *values)
+            command = nodes.node(package, *values)
         node = processes.start("node", command)
         world = Peer(processes, nodes.ros.python, nodes.ros.version, "world")
         for topic in TOPICS:
             world.do("advertise", topic=f"/{topic}", kind="std_msgs/Empty")
+        clerk = Clerk(nodes.ros.version, processes, world, node, folder)
+        if package == MANAGED:
+            clerk.change(Transition.CONFIGURE)
         processes.wait_until(
             lambda: all(world.do("listeners", topic=f"/{topic}") for topic in TOPICS), "the node listens"
         )
-        yield Clerk(nodes.ros.version, processes, world, node, folder)
+        yield clerk
 
 
 @pytest.fixture
@@ -145,7 +169,9 @@ def test_ten_requests_wait_and_then_the_oldest_gets_no_response(served: Clerk) -
     numbers = [served.order(data=True)]
     served.until(since, "service_order.u_request")
     refusal = "/order: more than 10 requests wait: the oldest one is …".removesuffix("…")
-    numbers += [served.order(data=True) for _ in range(10)]
+    for _ in range(10):
+        numbers.append(served.order(data=True))
+        served.tell("home")  # ROS 2 itself keeps only some requests of a burst.
     assert refusal not in served.output()
     numbers.append(served.order(data=True))
     served.processes.wait_until(lambda: refusal in served.output(), "a request is refused")
@@ -253,9 +279,18 @@ def test_a_cancel_that_no_transition_names_is_rejected_and_a_requirement_withhol
     assert "action_patrol.u_cancel" not in events
 
 
-def test_the_end_of_the_node_aborts_its_goal_and_drops_its_requests(
-    nodes: Workspace | Runner, tmp_path: Path
-) -> None:
+def test_another_server_is_reported(served: Clerk, nodes: Workspace | Runner) -> None:
+    other = Peer(served.processes, nodes.ros.python, nodes.ros.version, "other")
+    other.do("act", name="/tour", kind=TOUR)
+    fault = "/tour: /clerk_controller and /other serve it: only one answer counts"
+    fault = fault if served.version == 2 else "/tour/status: /other publishes it, too"
+    served.processes.wait_until(lambda: fault in served.output(), "the node reports the other server")
+    assert other.process.stdin is not None
+    other.process.stdin.close()
+    other.process.wait()
+
+
+def test_the_end_of_the_node_aborts_its_goal_and_drops_its_requests(nodes: Workspace | Runner, tmp_path: Path) -> None:
     with serving(nodes, tmp_path / "run") as clerk:
         goal = clerk.tour(1)
         assert clerk.accepted(goal)
@@ -268,3 +303,39 @@ def test_the_end_of_the_node_aborts_its_goal_and_drops_its_requests(
         assert "/order: requests without a response at the end of this node: 2"[:-1] in clerk.output()
         if clerk.version == 1:
             assert [clerk.answer(number) for number in numbers] == [None, None]
+
+
+def test_an_inactive_node_rejects_goals_and_answers_nothing(ros2_workspace: Workspace, tmp_path: Path) -> None:
+    with serving(ros2_workspace, tmp_path / "run", package=MANAGED) as clerk:
+        assert not clerk.accepted(clerk.tour(1))
+        order = clerk.order(data=True)
+        clerk.tell("home")
+        assert "service_order.u_request" not in clerk.events()
+        clerk.change(Transition.ACTIVATE)
+        clerk.until(0, "service_order.u_request")
+        clerk.tell("answer")
+        assert clerk.answer(order)["success"]
+        goal = clerk.tour(1)
+        assert clerk.accepted(goal)
+        clerk.change(Transition.DEACTIVATE)
+        clerk.world.do("cancel", number=goal)
+        assert clerk.world.wait("cancel_answered", value=goal)["yes"]
+        clerk.until(0, "action_tour.u_cancel")
+        clerk.tell("halted")
+        clerk.tell("home")
+        assert "action_tour.c_canceled" not in clerk.events()
+        clerk.change(Transition.ACTIVATE)
+        assert clerk.ended(goal) == ("cancelled", {"missed_waypoints": [1, 0]})
+        lost = clerk.tour(1)
+        assert clerk.accepted(lost)
+        clerk.change(Transition.DEACTIVATE, Transition.CLEAN_UP)
+        assert clerk.ended(lost) == ("aborted", {"missed_waypoints": []})
+        assert "/tour: the goal is aborted because this node ends" in clerk.output()
+        clerk.change(Transition.CONFIGURE, Transition.ACTIVATE)
+        again = clerk.tour(2)
+        assert clerk.accepted(again)
+        clerk.processes.wait_until(
+            lambda: all(clerk.world.do("listeners", topic=f"/{topic}") for topic in TOPICS), "the node listens"
+        )
+        clerk.tell("finish")
+        assert clerk.ended(again) == ("succeeded", {"missed_waypoints": [2, 0]})

@@ -94,9 +94,7 @@ def _packages(target: str) -> list[Package]:
         Package("keeper_controller", HERE / "kept" / "keeper.rscd", target),
         Package("waypoints_controller", RUNTIME / "waypoints.rscd", target, with_tests=True),
         Package("latch_controller", LATCHED / "latch.rscd", target, LATCHED / "controller-config.json"),
-        Package(
-            "clerk_controller", SERVING / "clerk.rscd", target, SERVING / "controller-config.json", own_types=True
-        ),
+        Package("clerk_controller", SERVING / "clerk.rscd", target, SERVING / "controller-config.json", own_types=True),
     ]
 
 

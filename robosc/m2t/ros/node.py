@@ -15,7 +15,7 @@ from robosc.m2t.ros.names import CppNames
 from robosc.model import engine, rosgraph, sct
 from robosc.model import expression as ex
 from robosc.model.reflection import tree
-from robosc.model.semantics.component_parts import answers
+from robosc.model.semantics.component_parts import answers, servers
 from robosc.model.semantics.definition import reported_variables
 from robosc.model.semantics.messages import (
     EACH,
@@ -365,7 +365,7 @@ class GeneratedNode:
         self.publishers = [self._publisher(publisher) for publisher in graph.publishers]
         self.services = [self._client(client) for client in graph.serviceClients]
         self.actions = [self._client(client) for client in graph.actionClients]
-        self.servers = [self._server(server) for server in (*graph.serviceServers, *graph.actionServers)]
+        self.servers = [self._server(server) for server in servers(graph)]
         self.shutdown = [self._last(name) for name in on_shutdown]
         self.instead = [self._last(name) for name in on_withheld]
         self.on_blocked = [self._last(name) for name in on_blocked]
@@ -376,9 +376,9 @@ class GeneratedNode:
         for action in graph.actionClients:
             outside |= {action.request.event, action.feedback.event, action.response.event}
             outside |= {action.error.event, action.canceled.event}
-        for server in (*graph.serviceServers, *graph.actionServers):
+        for server in servers(graph):
             outside |= {server.request.event, *(sending.event for sending in answers(server).values())}
-            outside |= {server.cancel} if isinstance(server, rosgraph.ActionServer) else set()
+        outside |= {server.cancel for server in graph.actionServers if server.cancel is not None}
         self.internal = [self._handler(event) for event in self._reactions if event not in outside]
         shown = reported_variables(graph)
         self.reported = [

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from robosc.m2t.c.comments import string_literal
 from robosc.m2t.c.names import identifier
-from robosc.model.semantics.component_parts import STATELESS, components, request
+from robosc.model.semantics.component_parts import STATELESS, components, request, servers
 from robosc.model.semantics.naming import Names
 
 if TYPE_CHECKING:
@@ -54,14 +54,14 @@ class Status:
         names = [*(topic.topic for topic in self.topics), *self.commanded]
         if version == 1:
             return [*names, *(f"{server.name}/status" for server in self.servers if server.is_action)]
-        return [*names, *(end.name for end in (*self.clients, *self.servers))]
+        return [*names, *(client.name for client in self.clients), *(server.name for server in self.servers)]
 
 
 def statuses(graph: rosgraph.RosGraph, node: GeneratedNode, gates: Mapping[rosgraph.Sending, Gate]) -> list[Status]:
     """Return the status of each component of a graph whose commands have these gates."""
     heard = dict(zip(graph.subscriptions, node.subscriptions, strict=True))
     called = dict(zip([*graph.serviceClients, *graph.actionClients], node.clients, strict=True))
-    served = dict(zip([*graph.serviceServers, *graph.actionServers], node.servers, strict=True))
+    served = dict(zip(servers(graph), node.servers, strict=True))
     actions = {client.request.event: client for client in node.clients if client.cancel}
     failing = {message.event for _, message in node.sent if message.may_fail}
     reported = {component.name: component for component in node.reported}

@@ -43,15 +43,14 @@ def components(graph: rosgraph.RosGraph) -> list[Parts]:
     clients: list[rosgraph.ServiceClient | rosgraph.ActionClient] = [*graph.serviceClients, *graph.actionClients]
     sendings = [sending for publisher in graph.publishers for sending in publisher.sendings]
     sendings += [client.request for client in clients]
-    servers: list[rosgraph.ServiceServer | rosgraph.ActionServer] = [*graph.serviceServers, *graph.actionServers]
-    sendings += [sending for server in servers for sending in answers(server).values()]
+    sendings += [sending for server in servers(graph) for sending in answers(server).values()]
     listening = [
         (component_name(reception.event), topic) for topic in graph.subscriptions for reception in topic.receptions
     ]
     topics = _grouped(dict.fromkeys(listening))
     commands = _grouped((component_name(sending.event), sending) for sending in sendings)
     called = _grouped((component_name(client.request.event), client) for client in clients)
-    served = _grouped((component_name(server.request.event), server) for server in servers)
+    served = _grouped((component_name(server.request.event), server) for server in servers(graph))
     for name in [*topics, *commands, *served]:
         plants.setdefault(name, None)
     stored = reported_variables(graph)
@@ -67,6 +66,11 @@ def components(graph: rosgraph.RosGraph) -> list[Parts]:
         )
         for name, plant in plants.items()
     ]
+
+
+def servers(graph: rosgraph.RosGraph) -> list[rosgraph.ServiceServer | rosgraph.ActionServer]:
+    """Return the services, then the actions that the node serves."""
+    return [*graph.serviceServers, *graph.actionServers]
 
 
 def answers(server: rosgraph.ServiceServer | rosgraph.ActionServer) -> dict[str, rosgraph.Sending]:

@@ -184,7 +184,6 @@ class Peer:
         number = len(self.sent)
         self.sent.append(None)
 
-
         def answered(response):
             self.say(answered=number, data=None if response is None else plain(response))
 

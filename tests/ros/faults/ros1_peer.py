@@ -82,7 +82,7 @@ class Ros:
 
         threading.Thread(target=call, daemon=True).start()
 
-    def start(self, name, kind, fields, accepted, progress, ended, cancelled):  # noqa: ARG002
+    def start(self, name, kind, fields, *, accepted, progress, ended, cancelled):  # noqa: ARG002
         if name not in self.clients:
             self.clients[name] = actionlib.ActionClient(name, _find(kind + "Action", "msg"))
             self.clients[name].wait_for_server()

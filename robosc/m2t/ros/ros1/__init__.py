@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from robosc.language.configuration import Configuration
-    from robosc.m2t.ros.node import GeneratedNode
+    from robosc.m2t.ros.node import Client, GeneratedNode, Server
     from robosc.m2t.ros.packages import UsedPackages
 
 #: Topics of an action. ROS 1 remaps these, not the action's own name.
@@ -74,7 +74,8 @@ def _names(node: GeneratedNode) -> Iterator[tuple[str, str, str, list[str]]]:
     topics |= {topic.topic: topic.word for topic in node.publishers}
     for topic, word in topics.items():
         yield "topic", word, topic, [""]
-    for end in (*node.services, *(server for server in node.servers if not server.is_action)):
-        yield "service", end.word, end.name, [""]
-    for end in (*node.actions, *(server for server in node.servers if server.is_action)):
-        yield "action", end.word, end.name, [f"/{part}" for part in _ACTION]
+    ends: list[Client | Server] = [*node.services, *node.actions, *node.servers]
+    for end in ends:
+        is_action = end.interface.kind == rosgraph.InterfaceKind.action
+        parts = [f"/{part}" for part in _ACTION] if is_action else [""]
+        yield "action" if is_action else "service", end.word, end.name, parts

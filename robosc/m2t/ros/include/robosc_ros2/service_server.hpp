@@ -31,7 +31,8 @@ class ServiceServer final : public CallServer<rmw_request_id_t, typename Type::R
     service_ = node.template create_service<Type>(
         name, guard([this](std::shared_ptr<rmw_request_id_t> caller, std::shared_ptr<Request> request) {
           this->called(*caller, *request);
-        }));
+        }),
+        rclcpp::ServicesQoS().keep_last(10 * kWaitingRequests));  // Bursts must arrive here.
   }
 
   ~ServiceServer() override { this->leave(); }  // NOLINT(bugprone-exception-escape): out of memory
