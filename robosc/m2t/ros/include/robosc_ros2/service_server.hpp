@@ -2,6 +2,7 @@
 #ifndef ROBOSC_ROS2_SERVICE_SERVER_HPP_
 #define ROBOSC_ROS2_SERVICE_SERVER_HPP_
 
+#include <cstddef>
 #include <exception>
 #include <memory>
 #include <string>
@@ -16,6 +17,9 @@
 
 namespace robosc {
 inline namespace ROBOSC_VERSION {
+
+/// The number of requests that the middleware keeps, so that a burst arrives whole.
+inline constexpr std::size_t kReceivedRequests = 100;
 
 /// The server of one service. ROS 2 has no refusals: a refused request has no response.
 template <typename Type>
@@ -32,7 +36,7 @@ class ServiceServer final : public CallServer<rmw_request_id_t, typename Type::R
         name, guard([this](std::shared_ptr<rmw_request_id_t> caller, std::shared_ptr<Request> request) {
           this->called(*caller, *request);
         }),
-        rclcpp::ServicesQoS().keep_last(10 * kWaitingRequests));  // Bursts must arrive here.
+        rclcpp::ServicesQoS().keep_last(kReceivedRequests));
   }
 
   ~ServiceServer() override { this->leave(); }  // NOLINT(bugprone-exception-escape): out of memory
