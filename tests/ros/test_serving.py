@@ -103,18 +103,20 @@ class Clerk:
 
 
 @contextmanager
-def serving(nodes: Workspace | Runner, folder: Path, package: str = "clerk_controller") -> Iterator[Clerk]:
-    """Run the node with its peer until it listens. Configure a managed node."""
+def serving(
+    nodes: Workspace | Runner, folder: Path, *parameters: str, package: str = "clerk_controller"
+) -> Iterator[Clerk]:
+    """Run the node with its peer until it listens. Configure a managed node. `parameters` are as `name:=value`."""
     with middleware(nodes, folder) as processes:
-        log = f"event_log:={folder / 'events.jsonl'}"
+        values = [f"event_log:={folder / 'events.jsonl'}", *parameters]
         if isinstance(nodes, Runner):
             settings = SERVING / "controller-config.json"
-            command: list[Any] = nodes.command(SERVING / "clerk.rscd", log, configuration=settings, own_types=True)
+            command: list[Any] = nodes.command(SERVING / "clerk.rscd", *values, configuration=settings, own_types=True)
         elif nodes.ros.version == 1:
             executable = nodes.folder / "devel/lib/clerk_controller/clerk_controller"
-            command = [executable, "__name:=clerk_controller", f"_{log}"]
+            command = [executable, "__name:=clerk_controller", *(f"_{value}" for value in values)]
         else:
-            command = nodes.node(package, log)
+            command = nodes.node(package, *values)
         node = processes.start("node", command)
         world = Peer(processes, nodes.ros.python, nodes.ros.version, "world")
         for topic in TOPICS:
@@ -166,7 +168,7 @@ def test_ten_requests_wait_and_then_the_oldest_gets_no_response(served: Clerk) -
     since = len(served.events())
     numbers = [served.order(data=True)]
     served.until(since, "service_order.u_request")
-    refusal = "/order: more than 10 requests wait: the oldest one is"
+    refusal = "/order: more than 10 requests wait: the oldest one is …".removesuffix("…")
     for _ in range(10):
         numbers.append(served.order(data=True))
         served.tell("home")  # ROS 2 itself keeps only some requests of a burst.
@@ -297,13 +299,14 @@ def test_the_end_of_the_node_aborts_its_goal_and_drops_its_requests(nodes: Works
         assert clerk.processes.stop(clerk.process) == 0
         assert clerk.ended(goal) == ("aborted", {"missed_waypoints": []})
         assert "/tour: the goal is aborted because this node ends" in clerk.output()
-        assert "/order: requests without a response at the end of this node: " in clerk.output()
+        # The second request may not have arrived.
+        assert "/order: requests without a response at the end of this node: 2"[:-1] in clerk.output()
         if clerk.version == 1:
             assert [clerk.answer(number) for number in numbers] == [None, None]
 
 
 def test_an_inactive_node_rejects_goals_and_answers_nothing(ros2_workspace: Workspace, tmp_path: Path) -> None:
-    with serving(ros2_workspace, tmp_path / "run", MANAGED) as clerk:
+    with serving(ros2_workspace, tmp_path / "run", package=MANAGED) as clerk:
         assert not clerk.accepted(clerk.tour(1))
         order = clerk.order(data=True)
         clerk.tell("home")

@@ -11,6 +11,8 @@ from robosc.base.ros_types import Section
 from robosc.engine import Settings as LoopSettings
 from robosc.language.configuration import NO_STOP, NO_STOP_ON_SILENCE, NO_STOP_ON_VIOLATION
 from robosc.language.configuration.parameters import topic_words, watchdog
+from robosc.model import sct
+from robosc.model.semantics.component_parts import answers
 from robosc.model.semantics.messages import paths_set
 from robosc.model.semantics.operators import UnreadableError
 from robosc.model.semantics.roles import event_name, plant_of
@@ -20,22 +22,26 @@ from robosc.run.runtime.core.composer import Composer
 from robosc.run.runtime.core.event_handler import EventHandler
 from robosc.run.runtime.core.monitors import OTHER_TYPE, GraphMonitor, Watchdog
 from robosc.run.runtime.core.node_data import UNSENDABLE, NotFiniteError, why_unsendable
+from robosc.run.runtime.core.port import GoalOutcome
+from robosc.run.runtime.core.servers import ActionServer, GoalEvents, ServiceServer
 from robosc.run.runtime.core.settings import SafeMessages
 from robosc.run.runtime.core.times import RESOLUTION_MS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
-    from robosc.model import rosgraph, sct
+    from robosc.model import rosgraph
     from robosc.model.semantics.component_parts import Parts
     from robosc.run.runtime.core.event_loop import EventLoop, Timer
     from robosc.run.runtime.core.json_text import Json
-    from robosc.run.runtime.core.port import Client, ControllerPort, Failure, Message
+    from robosc.run.runtime.core.port import Client, ControllerPort, Failure, Message, Server
     from robosc.run.runtime.core.settings import Settings
 
 
 #: Message sent last, if nothing was sent.
 _NOT_SENT: Message = object()
+#: Ends of the goals of clients, by the answers to them.
+_OUTCOMES = {"response": GoalOutcome.SUCCEEDED, "error": GoalOutcome.ABORTED, "canceled": GoalOutcome.CANCELED}
 
 
 @dataclass
@@ -43,7 +49,7 @@ class _Sender:
     """Sender of the data of one trigger. `message` and `logged` hold the data prepared last."""
 
     sending: rosgraph.Sending
-    owner: rosgraph.Publisher | Client
+    owner: rosgraph.Publisher | Client | Server
     interface: rosgraph.Interface
     section: Section
     frame: str
@@ -93,7 +99,9 @@ class Controller(EventHandler):
         self._withheld: set[str] = set()
         #: Enabled commands whose data the supervisor forbids.
         self._forbidden: set[str] = set()
-        self._monitor = GraphMonitor(port, event_loop, [*graph.serviceClients, *graph.actionClients])
+        called: list[Client | Server] = [*graph.serviceClients, *graph.actionClients]
+        called += [*graph.serviceServers, *graph.actionServers]
+        self._monitor = GraphMonitor(port, event_loop, called)
         awaited = {topic.removeprefix("/") for topic in settings.configuration.wait_for}
         #: Topics that commands wait for and that have not been received yet.
         self._unheard = [topic for topic in graph.subscriptions if topic.topic.removeprefix("/") in awaited]
@@ -120,6 +128,33 @@ class Controller(EventHandler):
             starter = ActionClient(port, event_loop, action, times, answers)
             self._add_sender(action, action.identifier, action.request, Section.GOAL, starter.start)
             self._starters[action] = self.goals[action.cancel] = starter
+        #: Servers of the controller, by their elements in the graph.
+        self.services = {served: self._service_server(served) for served in graph.serviceServers}
+        self.actions = {served: self._action_server(served) for served in graph.actionServers}
+
+    def _service_server(self, service: rosgraph.ServiceServer) -> ServiceServer:
+        server = ServiceServer(self._event_loop, partial(self.take, service), self._warner(service))
+        for sending in answers(service).values():
+            self._add_sender(service, service.identifier, sending, Section.RESPONSE, server.respond)
+        return server
+
+    def _action_server(self, action: rosgraph.ActionServer) -> ActionServer:
+        events = GoalEvents(
+            permits=partial(self.permits, action),
+            take=partial(self.take, action),
+            may_cancel=lambda: action.cancel is not None and self._control.enabled(event_name(action.cancel)),
+            cancel=partial(self.cancel_served, action),
+            default=lambda: self._port.create(action.interface, Section.RESULT),
+        )
+        server = ActionServer(self._event_loop, events, self._warner(action))
+        for word, sending in answers(action).items():
+            section = Section.FEEDBACK if word == "feedback" else Section.RESULT
+            send = partial(server.end, _OUTCOMES[word]) if word in _OUTCOMES else server.feed_back
+            self._add_sender(action, action.identifier, sending, section, send)
+        return server
+
+    def _warner(self, server: Server) -> Callable[[str], None]:
+        return lambda text: self._port.warn(f"{server.identifier}: {text}")
 
     def _ends(self, client: Client) -> tuple[Callable[[Message], None], Callable[[Failure, str, Message], None]]:
         """Return the handlers of a response and of a failure of a service or action."""
@@ -128,7 +163,7 @@ class Controller(EventHandler):
 
     def _add_sender(
         self,
-        owner: rosgraph.Publisher | Client,
+        owner: rosgraph.Publisher | Client | Server,
         name: str,
         sending: rosgraph.Sending,
         section: Section,
@@ -186,6 +221,15 @@ class Controller(EventHandler):
         if not self._stopping:
             self._stopping = True
             self._halt()
+            for service in self.services.values():
+                service.leave()
+            for action in self.actions.values():
+                action.leave()
+
+    @property
+    def busy(self) -> bool:
+        """Whether the stopping node waits for the fate of a goal, or for the client of one that it serves."""
+        return super().busy or any(server.waits for server in self.actions.values())
 
     def _watch(self, topic: str, seconds: float) -> Watchdog:
         def silent() -> None:
@@ -224,6 +268,37 @@ class Controller(EventHandler):
             yield
             self._control.end()
         self._stop_if_violated()
+
+    def permits(self, action: rosgraph.ActionServer, goal: Message) -> bool:
+        """Return whether a goal of a client can be accepted now: its event would happen. Report data of no use."""
+        reception, engine = action.request, self._control.engine
+        event = event_name(reception.event)
+        if self._halted or self._unheard:
+            return False
+        try:
+            engine.set_inputs(event, self._data.receive(reception.event, reception.inputs, goal).inputs)
+        except UnreadableError as fault:
+            self._warn(reception.event, f"{action.identifier}: {fault}")
+            return False
+        if not engine.permits_inputs(event):
+            return False
+        if not engine.enabled(event):
+            with self._batch():
+                self._receive(reception, action.identifier, goal)  # it may violate an assumption
+            return False
+        return True
+
+    def take(self, server: Server, request: Message) -> bool:
+        """Handle a request or an accepted goal of a client as a batch; return whether its event has happened."""
+        with self._batch():
+            is_possible = self._control.enabled(event_name(server.request.event))
+            return self._receive(server.request, server.identifier, request) and is_possible
+
+    def cancel_served(self, action: rosgraph.ActionServer) -> None:
+        """Handle an accepted request of a client to cancel its goal."""
+        assert action.cancel is not None
+        with self._batch():
+            self._perform(action.cancel)
 
     def _note_received(self, subscription: rosgraph.Subscription) -> None:
         if subscription in self._unheard:
@@ -314,7 +389,9 @@ class Controller(EventHandler):
         silent = [topic for topic in parts.topics if topic in self._watchdogs and self._watchdogs[topic].tripped]
         unheard = [topic for topic in parts.topics if topic in self._unheard]
         commanded = dict.fromkeys(self._publishers.get(sending) for sending in parts.commands)
-        watched = [*parts.topics, *(publisher for publisher in commanded if publisher is not None), *parts.clients]
+        watched: list[rosgraph.Subscription | rosgraph.Publisher | Client | Server] = [*parts.topics]
+        watched += [publisher for publisher in commanded if publisher is not None]
+        watched += [*parts.clients, *parts.servers]
         failed = [(client.identifier, self._failures[client].why) for client in parts.clients]
         failed += [
             (client.identifier, self._starters[client].trouble) for client in parts.clients if client in self._starters
@@ -340,7 +417,7 @@ class Controller(EventHandler):
             return False
         return True
 
-    def _forget_handed(self, owner: rosgraph.Publisher | Client) -> None:
+    def _forget_handed(self, owner: rosgraph.Publisher | Client | Server) -> None:
         """Send each message of a topic again that is sent on change: another one has gone out there."""
         for sender in self._on_change:
             if sender.owner is owner:
@@ -349,6 +426,8 @@ class Controller(EventHandler):
     def _warn_withheld(self, sender: _Sender, fault: NotFiniteError | UnreadableError) -> None:
         event = sender.sending.event
         word = plant_of(event).name.partition("_")[2]
+        if sender.sending.event.kind != sct.EventKind.trigger:
+            word += f"_{event.name.removeprefix('c_')}"
         path = str(fault) if isinstance(fault, NotFiniteError) else ""
         self._warn((event_name(event), path), f"{word} is withheld: {why_unsendable(fault)}")
 
