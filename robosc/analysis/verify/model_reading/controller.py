@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.analysis.verify.model_reading.machine import EventName, Plant, Slot
+from robosc.analysis.verify.model_reading.machine import EventName, Plant, Slot, choice_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -89,7 +89,7 @@ class ControllerText:
 
     def choice(self, name: EventName) -> Plant | None:
         """Return the choice of the data that a trigger sends; None if there is none."""
-        plant = Plant("data", name.plant.origin)
+        plant = choice_of(name)
         return plant if self.role(name) == TRIGGER and plant in self.alternatives else None
 
     def bound(self, proved: int | None) -> int:
