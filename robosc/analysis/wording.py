@@ -31,6 +31,12 @@ _EVENTS = {
     sct.EventKind.reset: "reset of {}",
     sct.EventKind.tau: "transition of {}",
     sct.EventKind.timeout: "timeout of {}",
+    sct.EventKind.request: "request from {}",
+    sct.EventKind.cancelRequest: "cancel from {}",
+    sct.EventKind.reply: "response to {}",
+    sct.EventKind.replyFeedback: "feedback to {}",
+    sct.EventKind.replyError: "error to {}",
+    sct.EventKind.replyCanceled: "canceled to {}",
 }
 #: Events of transitions without communication: their names do not identify the text that they come from.
 _OWN = (sct.EventKind.tau, sct.EventKind.timeout)

@@ -14,7 +14,7 @@ from robosc.language.syntax_messages import CONSTRUCTS, did_you_mean
 from robosc.model import expression as ex
 from robosc.model import robosc as rsc
 from robosc.model.reflection import tree
-from robosc.model.semantics.communication import RUNNING_WORD
+from robosc.model.semantics.communication import LASTING, RUNNING_WORD
 from robosc.model.semantics.naming import enumeration, escape_keyword
 from robosc.model.semantics.typing import (
     UNKNOWN,
@@ -286,7 +286,7 @@ class AccessLinker(NameFindings):
         ):
             return False
         word = behind[0] if behind else None
-        if not isinstance(communication, rsc.Service | rsc.Action):
+        if not isinstance(communication, LASTING):
             self._report(
                 name,
                 f"`{name.text}` is a message: it has no state",
@@ -324,7 +324,7 @@ class AccessLinker(NameFindings):
         return {
             called: communication
             for called, communication in communications.items()
-            if isinstance(communication, rsc.Service | rsc.Action)
+            if isinstance(communication, LASTING)
         }
 
     def _own_running(self, access: rsc.Access, name: Name, word: Name) -> bool:
@@ -338,7 +338,7 @@ class AccessLinker(NameFindings):
         if self.scope.find(rsc.NamedExpression, name.text):
             return False
         communication = (self.scope.communications(own) or {}).get(name.text)
-        if not isinstance(communication, rsc.Service | rsc.Action):
+        if not isinstance(communication, LASTING):
             return False
         access.component, access.item = own, communication
         self.file.references[access] = {"item": name}
@@ -347,7 +347,7 @@ class AccessLinker(NameFindings):
     def _running(self, access: rsc.Access, component: rsc.Component, name: Name) -> bool:
         """Link `A.b.running` to a service or action `b` of a component, and return whether this succeeds."""
         communication = (self.scope.communications(component) or {}).get(name.text)
-        if not isinstance(communication, rsc.Service | rsc.Action) or len(access.segments) != 1:
+        if not isinstance(communication, LASTING) or len(access.segments) != 1:
             return False
         (segment,) = access.segments
         word = self.file.references.get(segment, {}).get("property")

@@ -20,7 +20,7 @@ from robosc.language.surroundings import Surroundings
 from robosc.language.tokens import Kind, Tokens, too_complex
 from robosc.model import robosc as rsc
 from robosc.model.reflection import literals
-from robosc.model.semantics.communication import RUNNING_WORD, event_names, sent_type
+from robosc.model.semantics.communication import LASTING, RUNNING_WORD, event_names, sent_type
 from robosc.model.semantics.failures import FAILURE, FAILURES, reasons
 from robosc.model.semantics.naming import ROBOSC_QUANTIFIERS, TEXT_FUNCTION, escape_keyword
 from robosc.model.semantics.operators import FUNCTIONS
@@ -388,7 +388,7 @@ def _reasons(access: rsc.Access) -> Sequence[str]:
 def _running(surroundings: Surroundings, component: rsc.Component) -> Iterator[tuple[str, Any]]:
     """Yield the names that read whether a service or action of a component is running."""
     for name, communication in (surroundings.scope.communications(component) or {}).items():
-        if isinstance(communication, rsc.Service | rsc.Action):
+        if isinstance(communication, LASTING):
             yield f"{name}.{RUNNING_WORD}", communication
 
 

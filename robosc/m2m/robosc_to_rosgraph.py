@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from robosc.model.semantics.instances import Instance, InstanceParameter, InstanceVariable, PortInstance, Statement
 
     _Translation = Callable[[ex.Expression], ex.Expression]
+    _User = rosgraph.ServiceClient | rosgraph.ActionClient | rosgraph.ServiceServer | rosgraph.ActionServer
 
 #: Field of a basic value in a type of std_msgs.
 _FIELD = "data"
@@ -53,6 +54,8 @@ _KINDS = {
     robosc.Message: rosgraph.InterfaceKind.message,
     robosc.Service: rosgraph.InterfaceKind.service,
     robosc.Action: rosgraph.InterfaceKind.action,
+    robosc.OutgoingService: rosgraph.InterfaceKind.service,
+    robosc.OutgoingAction: rosgraph.InterfaceKind.action,
 }
 
 
@@ -101,7 +104,7 @@ class _RoboscToRosgraph:
             if isinstance(port.communication, robosc.Message):
                 self.message(port)
             else:
-                self.client(port)
+                self.client_or_server(port)
         for instance in self.instances:
             self.reactions(instance)
         self.types_of_kept_data()
@@ -158,22 +161,26 @@ class _RoboscToRosgraph:
                 self.graph.subscriptions.append(self.subscriptions[key])
             self.subscriptions[key].receptions.append(self.reception(port, event))
 
-    def client(self, port: PortInstance) -> None:
-        """Add a client. Its features have the names of the events in the language, and `reset`."""
-        is_action = isinstance(port.communication, robosc.Action)
-        client = rosgraph.ActionClient() if is_action else rosgraph.ServiceClient()
-        client.identifier = port.instance.topic(port.communication)
-        client.interface = self.interface(port.communication)
-        client.source = port.communication.source
-        for event in events(port.communication):
+    def client_or_server(self, port: PortInstance) -> None:
+        """Add a client or a server. Its features have the names of the events in the language, and `reset`."""
+        kinds: dict[type[robosc.CommunicationType], tuple[str, _User]] = {
+            robosc.Service: ("serviceClients", rosgraph.ServiceClient()),
+            robosc.Action: ("actionClients", rosgraph.ActionClient()),
+            robosc.OutgoingService: ("serviceServers", rosgraph.ServiceServer()),
+            robosc.OutgoingAction: ("actionServers", rosgraph.ActionServer()),
+        }
+        feature, user = kinds[type(port.communication)]
+        user.identifier = port.instance.topic(port.communication)
+        user.interface = self.interface(port.communication)
+        user.source = port.communication.source
+        for event in self.instances.possible_events(port):
             handler: rosgraph.Sending | rosgraph.Reception | sct.Event = self.trace.event(port, event.kind)
             if event.is_sent:
                 handler = self.sending(port, event)
-            elif event.kind not in CONTROLLABLE:
+            elif event.kind not in (*CONTROLLABLE, sct.EventKind.cancelRequest):
                 handler = self.reception(port, event)
-            setattr(client, event.name or event.kind.name, handler)
-        clients: list[ex.Located] = self.graph.actionClients if is_action else self.graph.serviceClients  # type: ignore[assignment]
-        clients.append(client)
+            setattr(user, event.name or event.kind.name, handler)
+        getattr(self.graph, feature).append(user)
 
     def interface(self, communication: robosc.CommunicationType) -> rosgraph.Interface:
         """Return the ROS type that a communication links, or the type of `std_msgs` or `std_srvs` for basic data."""
@@ -198,7 +205,7 @@ class _RoboscToRosgraph:
         )
         sent = data_type(port.communication, event)
         assert sent is not None
-        for statement in self.instances.provide_statements(port):
+        for statement in self.instances.provide_statements(port, event):
             provided = statement.element
             alternative = rosgraph.ProvidedData(location=self.trace.provided[statement], source=provided.source)
             is_object = isinstance(declared_type(port.instance.data_type(sent)), ObjectType)

@@ -16,11 +16,14 @@ from robosc.model.semantics.communication import (
     ERROR,
     EXECUTING,
     IDLE,
+    OPEN,
     READY,
     RUNNING,
+    SERVED,
     WAITING,
-    events,
+    feedback_event,
     port_event_of,
+    sending_event,
 )
 from robosc.model.semantics.cone_of_influence import commands, cone_of_influence, guard_of
 from robosc.model.semantics.durations import UNITS, bounds, milliseconds, set_milliseconds, set_on_robot
@@ -29,12 +32,14 @@ from robosc.model.semantics.inputs import Data, FailureReason
 from robosc.model.semantics.instances import Instance, Instances, InstanceVariable, PortInstance, Statement
 from robosc.model.semantics.naming import Names, escape_keyword
 from robosc.model.semantics.printing import RoboscPrinter, conjunction, disjunction
+from robosc.model.semantics.roles import plant_of
 from robosc.model.semantics.walks import copy_tree, fold, with_operands
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from robosc.model.places import Place
+    from robosc.model.semantics.communication import PortEvent
     from robosc.model.semantics.inputs import InputSource
 
 _Definition = TypeVar("_Definition", bound=robosc.StatedDefinition)
@@ -47,6 +52,7 @@ _NEVER_BLOCKED = (
     sct.EventKind.feedback,
     sct.EventKind.cancel,
     sct.EventKind.canceled,
+    sct.EventKind.cancelRequest,
 )
 
 _SERVICE = (
@@ -69,6 +75,18 @@ _ACTION = (
     (READY, sct.EventKind.reset, IDLE),
     (ERROR, sct.EventKind.reset, IDLE),
 )
+_OUTGOING_SERVICE = ((IDLE, sct.EventKind.request, OPEN), (OPEN, sct.EventKind.reply, IDLE))
+_OUTGOING_ACTION = (
+    (IDLE, sct.EventKind.request, EXECUTING),
+    (EXECUTING, sct.EventKind.replyFeedback, EXECUTING),
+    (EXECUTING, sct.EventKind.reply, IDLE),
+    (EXECUTING, sct.EventKind.replyError, IDLE),
+    (EXECUTING, sct.EventKind.cancelRequest, CANCELING),
+    (CANCELING, sct.EventKind.replyFeedback, CANCELING),
+    (CANCELING, sct.EventKind.reply, IDLE),
+    (CANCELING, sct.EventKind.replyError, IDLE),
+    (CANCELING, sct.EventKind.replyCanceled, IDLE),
+)
 _MESSAGE = ((READY, sct.EventKind.trigger, READY), (READY, sct.EventKind.response, READY))
 #: Transitions with an event of their own: its kind, and its name before a number.
 _OWN_EVENTS = (
@@ -76,8 +94,15 @@ _OWN_EVENTS = (
     (robosc.TimedTransition, sct.EventKind.timeout, "after"),
 )
 #: Edges of the plant of each communication (thesis, listings 5.1 and 5.2). Unlike listing 5.3, an action ends when its
-#: server reports the end. The first location is the initial and the marked one.
-_PLANTS = {robosc.Message: _MESSAGE, robosc.Service: _SERVICE, robosc.Action: _ACTION}
+#: server reports the end. The first location is the initial one. It is the only marked one, unless the controller
+#: serves: then all are, because a client that waits does not make the robot's work incomplete.
+_PLANTS = {
+    robosc.Message: (sct.PlantKind.message, _MESSAGE),
+    robosc.Service: (sct.PlantKind.service, _SERVICE),
+    robosc.Action: (sct.PlantKind.action, _ACTION),
+    robosc.OutgoingService: (sct.PlantKind.serviceServer, _OUTGOING_SERVICE),
+    robosc.OutgoingAction: (sct.PlantKind.actionServer, _OUTGOING_ACTION),
+}
 
 
 def transform(robot: robosc.Robot) -> tuple[sct.SupervisoryControlModel, Trace]:
@@ -122,7 +147,8 @@ class _RoboscToSct:
             if instance.automaton is not None:
                 self.edges(instance)
         for port in self.instances.ports():
-            self.data_plant(port)
+            self.data_plant(port, sending_event(port.communication))
+            self.data_plant(port, feedback_event(port.communication))
         for number, assumption in enumerate(self.instances.statements(robosc.Assumption), start=1):
             self.assumption(assumption, number)
         self.requirements()
@@ -132,10 +158,12 @@ class _RoboscToSct:
 
     def communication(self, port: PortInstance) -> None:
         instance, communication = port.instance, port.communication
-        kind = type(communication).__name__.lower()
+        kind, rows = _PLANTS[type(communication)]
+        served = isinstance(communication, SERVED)
+        word = type(communication).__name__.removeprefix("Outgoing").lower()
         plant = self.plant(
-            f"{kind}_{self.communication_name(port)}",
-            getattr(sct.PlantKind, kind),
+            f"{word}_{self.communication_name(port)}",
+            kind,
             f"{instance.name}.{communication.name}",
             communication.source,
         )
@@ -144,27 +172,35 @@ class _RoboscToSct:
         plant.topic = instance.topic(communication)
         self.trace.plants[port] = plant
         self.trace.origins[plant] = communication
-        events_by_kind: dict[str, sct.Event] = {}
-        for row in events(communication):
-            event = _event(plant, row.kind.name, row.kind, plant.source)
-            events_by_kind[row.kind.name] = self.trace.events[port, row.kind.name] = event
-        edges = [
-            (origin, events_by_kind[kind.name], end)
-            for origin, kind, end in _PLANTS[type(communication)]
-            if kind.name in events_by_kind
-        ]
+        events_by_kind: dict[sct.EventKind, sct.Event] = {}
+        for row in self.instances.possible_events(port):
+            event = _event(plant, row.event_name, row.kind, plant.source)
+            events_by_kind[row.kind] = self.trace.events[port, row.kind.name] = event
+        edges: list[tuple[str, sct.Event, str]] = []
+        reached = {rows[0][0]}
+        for origin, event_kind, end in rows:
+            if event_kind in events_by_kind and origin in reached:
+                edges.append((origin, events_by_kind[event_kind], end))
+                reached.add(end)
         names = dict.fromkeys(name for origin, _, end in edges for name in (origin, end))
         first = next(iter(names))
-        places = {name: _location(plant, name, initial=name == first, marked=name == first) for name in names}
+        places = {name: _location(plant, name, initial=name == first, marked=name == first or served) for name in names}
         self.inputs(plant, port)
         goal = self.goal(plant, port)
         for origin, event, end in edges:
             edge = _edge(places[origin], event, places[end])
+            if event.kind == sct.EventKind.request and not self.is_accepted(port):
+                edge.guard = ex.BooleanLiteral(value=False)
             for input_element, variable in goal.items():
                 if event.kind == sct.EventKind.trigger:
                     edge.updates.append(sct.Update(variable=variable, value=sct.InputReference(input=input_element)))
                 elif origin in RUNNING and end not in RUNNING:
                     edge.updates.append(sct.Update(variable=variable, value=copy_tree(variable.initial)))
+
+    def is_accepted(self, port: PortInstance) -> bool:
+        """Return whether a request can happen: a goal of an action that the controller serves needs a transition."""
+        rows = self.instances.possible_events(port)
+        return isinstance(port.communication, robosc.OutgoingService) or self.instances.is_named(port, rows[0])
 
     def goal(self, plant: sct.Plant, port: PortInstance) -> dict[sct.Input, sct.DiscreteVariable]:
         """Add the variables that hold the data of an action's goal while requirements judge it, by their inputs.
@@ -176,7 +212,7 @@ class _RoboscToSct:
         goal = {}
         for source in self.required_data.get(port, ()):
             carried = self.trace.inputs[source]
-            name = f"goal_{carried.name.removeprefix(f'i_{source.event.kind.name}_')}"
+            name = f"goal_{carried.name.removeprefix(f'i_{source.event.event_name}_')}"
             goal[carried] = sct.DiscreteVariable(
                 name=name, type=copy_tree(carried.type), initial=first_value(carried.type), source=plant.source
             )
@@ -213,7 +249,7 @@ class _RoboscToSct:
                 parts = [f"c{computed}"]
                 input_element.type = self.declarations.computed(carried)
                 input_element.text = carried.text
-            input_element.name = names.fresh("_".join([f"i_{carried.event.kind.name}", *parts]))
+            input_element.name = names.fresh("_".join([f"i_{carried.event.event_name}", *parts]))
             plant.inputs.append(input_element)
             self.trace.event(port, carried.event.kind).inputs.append(input_element)
             self.trace.inputs[carried] = input_element
@@ -258,7 +294,7 @@ class _RoboscToSct:
     def edges(self, instance: Instance) -> None:
         everywhere = [transition for transition, state in instance.transitions if state is None]
         reacted = dict.fromkeys(self.trace.event_of(transition, instance) for transition, _ in instance.transitions)
-        mentioned = [event for event in reacted if event.kind in _NEVER_BLOCKED]
+        mentioned = [event for event in reacted if _is_never_blocked(event)]
         for state in instance.states:
             location = self.trace.locations[instance, state]
             tried: dict[sct.Event, list[robosc.Transition]] = {event: [] for event in mentioned}
@@ -354,12 +390,14 @@ class _RoboscToSct:
 
     # Provided data
 
-    def data_plant(self, port: PortInstance) -> None:
+    def data_plant(self, port: PortInstance, row: PortEvent | None) -> None:
         """Add the plant that selects provided data (listing 5.4). Its names are stable from run to run."""
-        statements = self.instances.provide_statements(port)
-        if not statements:
+        statements = [] if row is None else self.instances.provide_statements(port, row)
+        if row is None or not statements:
             return
         name, origin = f"data_{self.communication_name(port)}", self.trace.plants[port].origin
+        if row.kind == sct.EventKind.replyFeedback:
+            name, origin = f"{name}_{row.name}", f"{origin}.{row.name}"
         plant = self.plant(name, sct.PlantKind.data, origin, statements[0].element.source)
         nothing = _location(plant, "none", initial=True, marked=True)
         for number, statement in enumerate(statements, start=1):
@@ -433,11 +471,13 @@ class _RoboscToSct:
 
     def requirement(self, statement: Statement[robosc.CommunicationRequirement], port: PortInstance) -> None:
         requirement, within = statement.element, statement.within
+        restricted = sending_event(port.communication)
+        assert restricted is not None
         disables = isinstance(requirement, robosc.DisablesRequirement)
         readable = self.instances.expanded(requirement.condition, within, readable=True)
         name, condition, begin = self.shown(port), self.print(readable), self.heading(statement)
         target = sct.Requirement(
-            event=self.trace.event(port, sct.EventKind.trigger),
+            event=self.trace.event(port, restricted.kind),
             kind=sct.RequirementKind.disables if disables else sct.RequirementKind.needs,
             condition=self.expressions(requirement.condition, within, port),
             name=_statement_name(statement),
@@ -509,8 +549,9 @@ class _RoboscToSct:
         assert port is not None
         if not isinstance(reference, robosc.NamedEvent):
             return self.shown(port)
-        kind = reference.resultType.name
-        return f"{kind} {'to' if kind == 'request' else 'from'} {self.shown(port)}"
+        row = port_event_of(reference)
+        assert row is not None
+        return f"{row.name} {row.preposition} {self.shown(port)}"
 
     def invariant(self, statement: Statement[robosc.StateInvariant]) -> None:
         invariant, within = statement.element, statement.within
@@ -624,6 +665,16 @@ def _edge(leaving: sct.Location | sct.Plant, event: sct.Event, target: sct.Locat
     edge = sct.Edge(event=event, target=target)
     leaving.edges.append(edge)
     return edge
+
+
+def _is_never_blocked(event: sct.Event) -> bool:
+    """Return whether components ignore an event in the states without a transition for it.
+
+    A component without a transition for the goal of an action that the controller serves rejects the goal.
+    """
+    if event.kind == sct.EventKind.request:
+        return plant_of(event).kind == sct.PlantKind.serviceServer
+    return event.kind in _NEVER_BLOCKED
 
 
 def _event(plant: sct.Plant, name: str, kind: sct.EventKind, source: Place | None) -> sct.Event:

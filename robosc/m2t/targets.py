@@ -106,8 +106,8 @@ class Target:
         if not self.needs_graph or graph is None:
             return findings
         names = [topic.topic for topics in (graph.subscriptions, graph.publishers) for topic in topics]
-        names += [service.identifier for service in graph.serviceClients]
-        names += [action.identifier for action in graph.actionClients]
+        for users in (graph.serviceClients, graph.actionClients, graph.serviceServers, graph.actionServers):
+            names += [user.identifier for user in users]
         return [*findings, *configuration.unknown_names([name.removeprefix("/") for name in names])]
 
     @property

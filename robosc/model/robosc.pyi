@@ -123,7 +123,7 @@ class ComponentBehaviour(ComponentDefinition):
     def __init__(self, *, automaton: Automaton | None = ..., source: Place | None = ...) -> None: ...
 
 class CommunicationType(ComponentDefinition, AccessibleItem):
-    """A message, service or action of a component (thesis figure 4.9)."""
+    """A message, service or action of a component (thesis figure 4.9), or one that the controller serves."""
     identifier: str | None
     interface: Interface | None
     computedIdentifier: expression.Expression | None
@@ -144,6 +144,19 @@ class Service(CommunicationType):
 
 class Action(CommunicationType):
     """A longer task: goal, feedback, result. The controller can cancel it."""
+    requestType: DataType
+    responseType: DataType
+    feedbackType: DataType
+    def __init__(self, *, requestType: DataType | None = ..., responseType: DataType | None = ..., feedbackType: DataType | None = ..., identifier: str | None = ..., interface: Interface | None = ..., computedIdentifier: expression.Expression | None = ..., source: Place | None = ..., name: str | None = ...) -> None: ...
+
+class OutgoingService(CommunicationType):
+    """A service that the controller serves: others call it, and the controller answers each request once."""
+    requestType: DataType
+    responseType: DataType
+    def __init__(self, *, requestType: DataType | None = ..., responseType: DataType | None = ..., identifier: str | None = ..., interface: Interface | None = ..., computedIdentifier: expression.Expression | None = ..., source: Place | None = ..., name: str | None = ...) -> None: ...
+
+class OutgoingAction(CommunicationType):
+    """An action that the controller serves: others send a goal, which the controller accepts or rejects. It sends feedback and a result. A client can ask to cancel the goal."""
     requestType: DataType
     responseType: DataType
     feedbackType: DataType
@@ -526,8 +539,9 @@ class DataStatement(Definition, ComponentDefinition):
     def __init__(self, *, communicationType: CommunicationReference | None = ..., data: expression.Expression | None = ..., condition: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
 class ProvideStatement(DataStatement):
-    """The data of a command (thesis figure 4.12). The first statement, in the order of the text, with a true condition applies."""
-    def __init__(self, *, communicationType: CommunicationReference | None = ..., data: expression.Expression | None = ..., condition: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
+    """The data of a command (thesis figure 4.12), or of an answer of the controller. The first statement, in the order of the text, with a true condition applies."""
+    feedback: bool | None
+    def __init__(self, *, feedback: bool | None = ..., communicationType: CommunicationReference | None = ..., data: expression.Expression | None = ..., condition: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
 class LimitStatement(DataStatement):
     """A change of the data of an incoming message, after `provide`. `value` is the data so far. All statements with a true condition apply: first those in components, then those outside, in the order of the text."""

@@ -17,9 +17,11 @@ class RosGraph(expression.NamedElement):
     publishers: MutableSequence[Publisher]
     serviceClients: MutableSequence[ServiceClient]
     actionClients: MutableSequence[ActionClient]
+    serviceServers: MutableSequence[ServiceServer]
+    actionServers: MutableSequence[ActionServer]
     reactions: MutableSequence[Reaction]
     parameters: MutableSequence[Parameter]
-    def __init__(self, *, model: sct.SupervisoryControlModel | None = ..., interfaces: Iterable[Interface] = ..., enumerations: Iterable[expression.Enumeration] = ..., conversions: Iterable[Conversion] = ..., variables: Iterable[NodeVariable] = ..., subscriptions: Iterable[Subscription] = ..., publishers: Iterable[Publisher] = ..., serviceClients: Iterable[ServiceClient] = ..., actionClients: Iterable[ActionClient] = ..., reactions: Iterable[Reaction] = ..., parameters: Iterable[Parameter] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
+    def __init__(self, *, model: sct.SupervisoryControlModel | None = ..., interfaces: Iterable[Interface] = ..., enumerations: Iterable[expression.Enumeration] = ..., conversions: Iterable[Conversion] = ..., variables: Iterable[NodeVariable] = ..., subscriptions: Iterable[Subscription] = ..., publishers: Iterable[Publisher] = ..., serviceClients: Iterable[ServiceClient] = ..., actionClients: Iterable[ActionClient] = ..., serviceServers: Iterable[ServiceServer] = ..., actionServers: Iterable[ActionServer] = ..., reactions: Iterable[Reaction] = ..., parameters: Iterable[Parameter] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Interface(expression.Located):
     """A ROS type."""
@@ -142,6 +144,26 @@ class ActionClient(expression.Located):
     canceled: Reception
     reset: sct.Event
     def __init__(self, *, identifier: str | None = ..., interface: Interface | None = ..., request: Sending | None = ..., feedback: Reception | None = ..., response: Reception | None = ..., error: Reception | None = ..., cancel: sct.Event | None = ..., canceled: Reception | None = ..., reset: sct.Event | None = ..., source: Place | None = ...) -> None: ...
+
+class ServiceServer(expression.Located):
+    """A service that the node serves. The node takes one request at a time; the others wait."""
+    identifier: str
+    interface: Interface
+    request: Reception
+    response: Sending | None
+    def __init__(self, *, identifier: str | None = ..., interface: Interface | None = ..., request: Reception | None = ..., response: Sending | None = ..., source: Place | None = ...) -> None: ...
+
+class ActionServer(expression.Located):
+    """An action that the node serves, with one goal at a time. An answer is absent if no transition names it: it never happens."""
+    identifier: str
+    interface: Interface
+    request: Reception
+    cancel: sct.Event | None
+    feedback: Sending | None
+    response: Sending | None
+    error: Sending | None
+    canceled: Sending | None
+    def __init__(self, *, identifier: str | None = ..., interface: Interface | None = ..., request: Reception | None = ..., cancel: sct.Event | None = ..., feedback: Sending | None = ..., response: Sending | None = ..., error: Sending | None = ..., canceled: Sending | None = ..., source: Place | None = ...) -> None: ...
 
 class Reaction(expression.Located):
     """The reads and changes of an event in the node if a component is in one of the locations and the guard holds. Values are those before the event."""

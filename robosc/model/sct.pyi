@@ -36,7 +36,7 @@ class Plant(expression.NamedElement):
     def __init__(self, *, kind: PlantKind | None = ..., origin: str | None = ..., reference: str | None = ..., text: str | None = ..., topic: str | None = ..., events: Iterable[Event] = ..., inputs: Iterable[Input] = ..., variables: Iterable[DiscreteVariable] = ..., locations: Iterable[Location] = ..., edges: Iterable[Edge] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class PlantKind:
-    """message, service, action: communication (thesis listings 5.1 to 5.3); behaviour: a component's automaton; data: the provide statements of one communication (listing 5.4); requirement: an automaton that observes events and never blocks one. The restrictions of a requirement automaton are requirements on its locations. The state count of the plants does not include its locations. assumption: a plant with one location that permits events from the robot only where a condition holds; the node checks it."""
+    """message, service, action: communication (thesis listings 5.1 to 5.3); serviceServer, actionServer: a service or an action that the controller serves; behaviour: a component's automaton; data: the provide statements of one communication (listing 5.4); requirement: an automaton that observes events and never blocks one. The restrictions of a requirement automaton are requirements on its locations. The state count of the plants does not include its locations. assumption: a plant with one location that permits events from the robot only where a condition holds; the node checks it."""
     name: str
     message: ClassVar[PlantKind]
     service: ClassVar[PlantKind]
@@ -45,6 +45,8 @@ class PlantKind:
     data: ClassVar[PlantKind]
     requirement: ClassVar[PlantKind]
     assumption: ClassVar[PlantKind]
+    serviceServer: ClassVar[PlantKind]
+    actionServer: ClassVar[PlantKind]
 
 class Event(expression.NamedElement):
     """An event of all plants that have it in their alphabets, simultaneous in all of them."""
@@ -55,7 +57,7 @@ class Event(expression.NamedElement):
     def __init__(self, *, controllable: bool | None = ..., kind: EventKind | None = ..., inputs: Iterable[Input] = ..., timer: Timer | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class EventKind:
-    """trigger, cancel: sent by the controller; response, error, feedback, canceled: caused by the robot; reset, tau: silent; data: selection of the provided data; timeout: expiry of a timer; plain: an event of a model from CIF without a communication; input: a change of a CIF input variable by the environment."""
+    """trigger, cancel: sent by the controller; response, error, feedback, canceled: caused by the robot; reset, tau: silent; data: selection of the provided data; timeout: expiry of a timer; plain: an event of a model from CIF without a communication; input: a change of a CIF input variable by the environment; request, cancelRequest: caused by a client of a service or an action that the controller serves; reply, replyFeedback, replyError, replyCanceled: the answers of the controller to that client."""
     name: str
     trigger: ClassVar[EventKind]
     response: ClassVar[EventKind]
@@ -69,6 +71,12 @@ class EventKind:
     plain: ClassVar[EventKind]
     input: ClassVar[EventKind]
     canceled: ClassVar[EventKind]
+    request: ClassVar[EventKind]
+    cancelRequest: ClassVar[EventKind]
+    reply: ClassVar[EventKind]
+    replyFeedback: ClassVar[EventKind]
+    replyError: ClassVar[EventKind]
+    replyCanceled: ClassVar[EventKind]
 
 class Timer(expression.Located):
     """A timer that runs while a component is in a location, or always, with the events that restart it. On expiry, its event happens once. For synthesis, the event is possible at any time."""

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from robosc.base.files.json_reading import JsonError, json_value
 from robosc.model import expression as ex
 from robosc.model import sct
+from robosc.model.semantics.communication import ANSWERS, REQUESTS
 from robosc.model.semantics.naming import output_name
 from robosc.model.semantics.roles import Roles, event_name, plant_of
 from robosc.synthesis.decoding import text, value
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from robosc.synthesis.encoding import Element
 
 #: Event that the bare name of a communication refers to.
-_MEANT = (sct.EventKind.trigger, sct.EventKind.response)
+_MEANT = (sct.EventKind.trigger, sct.EventKind.reply, sct.EventKind.response)
 #: Event in the words of models and answers.
 _IN_WORDS = re.compile(r"(request|response|error|feedback|canceled|cancel) +(?:to|from|of) +(\S+)")
 
@@ -64,7 +65,7 @@ def _event_names(event: sct.Event) -> Iterator[str]:
     if plant.kind == sct.PlantKind.data:
         return
     owners = [plant.name, *_plant_names(plant)]
-    kind = event.kind.name
+    kind = event.name[2:] if event.kind in (*ANSWERS, *REQUESTS) else event.kind.name
     numbered = event.kind in (sct.EventKind.tau, sct.EventKind.timeout)
     suffixes = [event.name] if numbered else [event.name, kind]
     if event.kind == sct.EventKind.trigger:

@@ -10,7 +10,7 @@ from robosc.analysis.paths import Path, trace
 from robosc.analysis.wording import in_words, join_with_and, name, what_is, words
 from robosc.model import expression as ex
 from robosc.model import sct
-from robosc.model.semantics.communication import CANCELING, ERROR, EXECUTING, IDLE, READY, WAITING
+from robosc.model.semantics.communication import CANCELING, ERROR, EXECUTING, IDLE, OPEN, READY, WAITING
 from robosc.model.semantics.edges import edges_from
 from robosc.model.semantics.printing import RobotPrinter, disjunction
 from robosc.model.semantics.walks import copy_tree
@@ -33,6 +33,7 @@ _PHASES = {
     EXECUTING: "is still under way",
     CANCELING: "is being canceled, and has not ended",
     READY: "has ended, and is reset before it can start again",
+    OPEN: "still has to be answered",
     ERROR: "has failed, and is reset after a while before it can start again",
 }
 _WAITING = {
@@ -42,6 +43,12 @@ _WAITING = {
     sct.EventKind.feedback: "`on feedback from {}`",
     sct.EventKind.cancel: "`on cancel from {}`",
     sct.EventKind.canceled: "`on canceled from {}`",
+    sct.EventKind.request: "`on request from {}`",
+    sct.EventKind.cancelRequest: "`on cancel from {}`",
+    sct.EventKind.reply: "`on response to {}`",
+    sct.EventKind.replyFeedback: "`on feedback to {}`",
+    sct.EventKind.replyError: "`on error to {}`",
+    sct.EventKind.replyCanceled: "`on canceled to {}`",
 }
 
 

@@ -9,7 +9,7 @@ from robosc.base.ros_types.wire import NestedType, Section
 from robosc.language.checks.definitions import communication_of, communications
 from robosc.model import robosc as rsc
 from robosc.model.reflection import tree
-from robosc.model.semantics.communication import PortEvent, carrying_events, event_of, sending_event
+from robosc.model.semantics.communication import PortEvent, carrying_events, event_of, provided_event
 from robosc.model.semantics.cone_of_influence import accesses
 
 if TYPE_CHECKING:
@@ -97,7 +97,7 @@ class UsedData:
 
     def _provided(self, statement: rsc.DataStatement) -> None:
         communication = communication_of(statement.communicationType)
-        source = communication, sending_event(communication)
+        source = communication, provided_event(statement)
         for expression in (statement.data, statement.condition):
             self._read(source, expression)
         touched = self._touched.setdefault(source, [])

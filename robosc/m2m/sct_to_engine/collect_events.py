@@ -24,6 +24,10 @@ _OF_KIND = {
     (sct.EventKind.trigger, sct.PlantKind.service): "{what} is called{on}.",
     (sct.EventKind.trigger, sct.PlantKind.action): "{what} is started{on}.",
     (sct.EventKind.response, sct.PlantKind.message): "{what} arrived{on}.",
+    (sct.EventKind.request, sct.PlantKind.serviceServer): "A client calls {what}{on}.",
+    (sct.EventKind.request, sct.PlantKind.actionServer): "The controller accepts a goal of {what}{on}.",
+    (sct.EventKind.reply, sct.PlantKind.serviceServer): "The controller answers a call of {what}{on}.",
+    (sct.EventKind.reply, sct.PlantKind.actionServer): "The goal of {what} succeeds{on}.",
 }
 _SENTENCES = {
     sct.EventKind.trigger: "{what}: {name}.",
@@ -38,6 +42,10 @@ _SENTENCES = {
     sct.EventKind.timeout: "{what} has waited {time}{steps}.",
     sct.EventKind.plain: "{name} happens{steps}.",
     sct.EventKind.input: "{name} gets a value.",
+    sct.EventKind.cancelRequest: "A client asks to cancel {what}{on}.",
+    sct.EventKind.replyFeedback: "The controller sends feedback on {what}{on}.",
+    sct.EventKind.replyError: "The goal of {what} is aborted{on}.",
+    sct.EventKind.replyCanceled: "The goal of {what} is canceled{on}.",
 }
 
 

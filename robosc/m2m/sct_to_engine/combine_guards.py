@@ -25,8 +25,9 @@ class GuardTerms:
     """The condition under which an event can happen: its four parts on the state, and their conjunction.
 
     `by_plant` holds the condition that a plant has an edge for the event. `assumption` is the conjunction of these for
-    assumptions, and `plants` for the other plants. The four parts of a command with inputs hold where some inputs are
-    allowed. `data` is the further condition on its inputs.
+    assumptions, and `plants` for the other plants. The four parts of an event that depends on its inputs hold
+    where some inputs are allowed: of a command, or of a goal that the controller can reject. `data` is the further
+    condition on its inputs.
     """
 
     by_plant: Mapping[sct.Plant, Term]
@@ -109,8 +110,11 @@ def _possible(plant: sct.Plant, edges: Edges, lower: Lowering, *, with_some_data
 
 
 def _refuse_inputs_of_robot(event: sct.Event, edges: Edges) -> None:
-    """Raise ModelError for an event of the robot: its data is unknown until it happens."""
-    if not event.controllable:
+    """Raise ModelError for an event of the robot: its data is unknown until it happens.
+
+    The controller rejects a goal because of its data, so that the goal of an action that it serves may depend on them.
+    """
+    if not event.controllable and event.kind != sct.EventKind.request:
         message = f"`{event_name(event)}` depends on its data, which the controller only receives with the event"
         hint = "remove it from plant invariants, or add an edge for all other data"
         first = next(edge for leaving in edges.values() for edge in leaving)

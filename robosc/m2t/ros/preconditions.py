@@ -75,6 +75,7 @@ def preconditions(models: Models, configuration: Configuration, kind: str, ros: 
         hint = 'leave out "publishStateInformation": false'
         findings.append(configuration.error(("typedState",), '"typedState" needs "publishStateInformation"', hint))
     findings += _violations(graph, configuration)
+    findings += _served(graph, kind)
     if kind == "controller":
         name = configuration.package_name(graph)
         return [*findings, *_package(graph, configuration, name), *_settings(graph, configuration)]
@@ -88,6 +89,17 @@ def preconditions(models: Models, configuration: Configuration, kind: str, ros: 
         *_controller(configuration),
         *_unused(configuration),
     ]
+
+
+def _served(graph: rosgraph.RosGraph, kind: str) -> Iterator[Diagnostic]:
+    """Return errors on services and actions that a node would have to serve."""
+    servers: list[tuple[ex.Located, str, str]] = [
+        *((server, server.identifier, "service") for server in graph.serviceServers),
+        *((server, server.identifier, "action") for server in graph.actionServers),
+    ]
+    for server, name, word in servers:
+        message = f"the {kind} cannot serve the {word} `{name}` yet"
+        yield _error(server, message, f"leave `outgoing {word}` out, or choose another target")
 
 
 def _package(graph: rosgraph.RosGraph, configuration: Configuration, name: str) -> Iterator[Diagnostic]:
@@ -118,6 +130,8 @@ def _names(graph: rosgraph.RosGraph) -> Iterator[Diagnostic]:
         *((publisher, publisher.topic, "topic") for publisher in graph.publishers),
         *((client, client.identifier, "service") for client in graph.serviceClients),
         *((client, client.identifier, "action") for client in graph.actionClients),
+        *((server, server.identifier, "service") for server in graph.serviceServers),
+        *((server, server.identifier, "action") for server in graph.actionServers),
     ]
     for element, name, kind in named:
         if not _TOPIC.fullmatch(name):

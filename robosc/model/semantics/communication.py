@@ -26,8 +26,31 @@ class PortEvent(NamedTuple):
 
     @property
     def is_sent(self) -> bool:
-        """Whether the controller sends the data. If not, a component receives it."""
-        return self.kind == sct.EventKind.trigger
+        """Whether the controller sends the event with its data. If not, the controller receives it."""
+        return self.kind == sct.EventKind.trigger or self.kind in ANSWERS
+
+    @property
+    def preposition(self) -> str:
+        """Word before the communication in the text of an event: `request to move`, `response from move`."""
+        return "to" if self.is_sent else "from"
+
+    @property
+    def event_name(self) -> str:
+        """Name of the event in the plant, after `c_` or `u_`: the word of the language for a served communication."""
+        return self.name if self.kind in (*ANSWERS, *REQUESTS) else self.kind.name
+
+
+#: Answers of the controller to the clients of a service or an action that it serves.
+ANSWERS = (
+    sct.EventKind.reply,
+    sct.EventKind.replyFeedback,
+    sct.EventKind.replyError,
+    sct.EventKind.replyCanceled,
+)
+#: Answers that end a request or a goal.
+ENDING_ANSWERS = (sct.EventKind.reply, sct.EventKind.replyError, sct.EventKind.replyCanceled)
+#: Events from the clients of a service or an action that the controller serves.
+REQUESTS = (sct.EventKind.request, sct.EventKind.cancelRequest)
 
 
 _RESET = PortEvent(sct.EventKind.reset, "")
@@ -58,13 +81,33 @@ EVENTS: Mapping[type[robosc.CommunicationType], tuple[PortEvent, ...]] = {
         _ABORTED,
         _CANCELED,
     ),
+    robosc.OutgoingService: (
+        PortEvent(sct.EventKind.request, "request", Section.REQUEST, "requestType"),
+        PortEvent(sct.EventKind.reply, "response", Section.RESPONSE, "responseType"),
+    ),
+    robosc.OutgoingAction: (
+        PortEvent(sct.EventKind.request, "request", Section.GOAL, "requestType"),
+        PortEvent(sct.EventKind.cancelRequest, "cancel"),
+        PortEvent(sct.EventKind.replyFeedback, "feedback", Section.FEEDBACK, "feedbackType"),
+        PortEvent(sct.EventKind.reply, "response", Section.RESULT, "responseType"),
+        PortEvent(sct.EventKind.replyError, "error", Section.RESULT, "responseType"),
+        PortEvent(sct.EventKind.replyCanceled, "canceled", Section.RESULT, "responseType"),
+    ),
 }
+#: Communications that the controller serves: others call it.
+SERVED = (robosc.OutgoingService, robosc.OutgoingAction)
+#: Communications that the controller calls.
+CALLED = (robosc.Service, robosc.Action)
+#: Communications that run from a request to its end: all but messages.
+LASTING = (*CALLED, *SERVED)
 #: Locations of the plants of services and actions (thesis, listings 5.2 and 5.3). A message's location is READY.
 IDLE, WAITING, EXECUTING, READY, ERROR = "idle", "wait_for_response", "executing", "ready", "error"
 #: The controller asked the server to cancel the goal, and the goal has not ended yet.
 CANCELING = "canceling"
+#: The controller serves a request that it has not answered yet.
+OPEN = "open"
 #: Locations in which a service or action is running: from its request until its end is known.
-RUNNING = (WAITING, EXECUTING, CANCELING)
+RUNNING = (WAITING, EXECUTING, CANCELING, OPEN)
 #: Word after the name of a service or action that reads whether it is running.
 RUNNING_WORD = "running"
 #: Names of events, in the order in which the language lists them.
@@ -76,6 +119,7 @@ CONTROLLABLE = (
     sct.EventKind.cancel,
     sct.EventKind.tau,
     sct.EventKind.data,
+    *ANSWERS,
 )
 
 
@@ -134,8 +178,25 @@ def port_event_of(reference: robosc.EventReference) -> PortEvent | None:
 
 
 def sending_event(communication: robosc.CommunicationType | None) -> PortEvent | None:
-    """Return the event with which the controller sends data. None if it sends none."""
-    return next((row for row in events(communication) if row.is_sent), None)
+    """Return the event with which the controller sends data. None if it sends none.
+
+    This is the response of a service or action that the controller serves.
+    """
+    kinds = (sct.EventKind.trigger, sct.EventKind.reply)
+    return next((row for row in events(communication) if row.kind in kinds), None)
+
+
+def feedback_event(communication: robosc.CommunicationType | None) -> PortEvent | None:
+    """Return the event with which the controller sends feedback. None if it sends none."""
+    return next((row for row in events(communication) if row.kind == sct.EventKind.replyFeedback), None)
+
+
+def provided_event(statement: robosc.DataStatement) -> PortEvent | None:
+    """Return the event whose data a `provide` statement or a limit determines. None if there is none."""
+    communication = statement.communicationType.communicationType if statement.communicationType else None
+    if isinstance(statement, robosc.ProvideStatement) and statement.feedback:
+        return feedback_event(communication)
+    return sending_event(communication)
 
 
 def carrying_events(communication: robosc.CommunicationType) -> list[tuple[PortEvent, robosc.DataType]]:
@@ -143,7 +204,9 @@ def carrying_events(communication: robosc.CommunicationType) -> list[tuple[PortE
 
     Several ends of a goal carry its result. Only the response is included.
     """
-    rows = sorted((row for row in events(communication) if row.section and not happens_anyway(row)), key=_section_index)
+    others = (sct.EventKind.replyError, sct.EventKind.replyCanceled)
+    carrying = (row for row in events(communication) if row.section and not happens_anyway(row))
+    rows = sorted((row for row in carrying if row.kind not in others), key=_section_index)
     types = ((row, data_type(communication, row)) for row in rows)
     return [(row, declared) for row, declared in types if declared is not None]
 

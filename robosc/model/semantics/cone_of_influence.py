@@ -12,6 +12,7 @@ from robosc.model.semantics.communication import (
     CONTROLLABLE,
     data_type,
     event_of,
+    feedback_event,
     port_event_of,
     sending_event,
     sent_type,
@@ -224,8 +225,10 @@ def _remembered(
         yield from ((required.element.condition, required.within, port) for port in _carriers(instances, required))
     for assumed in instances.statements(robosc.Assumption):
         yield assumed.element.condition, assumed.within, None
-    for provided in (statement for port in instances.ports() for statement in instances.provide_statements(port)):
-        yield provided.element.condition, provided.within, None
+    for port in instances.ports():
+        for row in (sending_event(port.communication), feedback_event(port.communication)):
+            provided = [] if row is None else instances.provide_statements(port, row)
+            yield from ((statement.element.condition, statement.within, None) for statement in provided)
     for invariant in instances.statements(robosc.StateInvariant):
         yield invariant.element.condition, invariant.within, None
 

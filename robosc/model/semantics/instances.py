@@ -12,8 +12,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar
 
 from robosc.model import expression as ex
-from robosc.model import robosc
+from robosc.model import robosc, sct
 from robosc.model.reflection import contents
+from robosc.model.semantics.communication import ANSWERS, event_of, events
 from robosc.model.semantics.evaluation import literal
 from robosc.model.semantics.expansion import Expansion, constant, constant_value
 from robosc.model.semantics.naming import escape_keyword
@@ -22,6 +23,7 @@ from robosc.model.semantics.walks import copy_tree, parts
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
+    from robosc.model.semantics.communication import PortEvent
     from robosc.model.semantics.expansion import Arguments
 
 _Element = TypeVar("_Element", bound="ex.Located")
@@ -114,6 +116,8 @@ class Instance:
         return self._types[declared]
 
 
+#: The cancel of a client, and the end of a goal after it.
+_CANCELS = (sct.EventKind.cancelRequest, sct.EventKind.replyCanceled)
 #: Maximum count of an event in a requirement that counts.
 MOST = 1000
 #: Maximum number of instances of a fleet.
@@ -209,12 +213,33 @@ class Instances:
         """Return whether another instance has a communication of the same name."""
         return self._names[communication.name] > 1
 
-    def provide_statements(self, port: PortInstance) -> list[Statement[robosc.ProvideStatement]]:
-        """Return the statements on the data of a communication, in the order of the text.
+    def is_named(self, port: PortInstance, event: PortEvent) -> bool:
+        """Return whether a transition of an instance names an event of a communication."""
+        return event in self._named.get(port, ())
 
-        Statements outside of components override those inside.
+    def possible_events(self, port: PortInstance) -> list[PortEvent]:
+        """Return the events of a communication that exist in the robot, in the order of its plant.
+
+        An answer of the controller exists only if a transition names it. A client can cancel a goal only if a
+        transition names the cancel or the end after it.
         """
-        statements = self._provided.get(port, [])
+        rows = events(port.communication)
+        named = self._named.get(port, set())
+        is_canceled = any(row.kind in _CANCELS for row in named)
+        conditional = {row: row in named for row in rows if row.kind in ANSWERS}
+        conditional |= {row: is_canceled for row in rows if row.kind == sct.EventKind.cancelRequest}
+        return [row for row in rows if conditional.get(row, True)]
+
+    def provide_statements(
+        self, port: PortInstance, event: PortEvent | None = None
+    ) -> list[Statement[robosc.ProvideStatement]]:
+        """Return the statements on the data of an event of a communication, in the order of the text.
+
+        None: the event with which the controller sends data. Every end of a goal that the controller serves has the
+        data of its response. Statements outside of components override those inside.
+        """
+        feedback = event is not None and event.kind == sct.EventKind.replyFeedback
+        statements = self._provided.get((port, feedback), [])
         outside = [statement for statement in statements if statement.within is None]
         return outside or statements
 
@@ -389,12 +414,24 @@ class Instances:
         return Counter(port.communication.name for port in self.ports())
 
     @cached_property
-    def _provided(self) -> dict[PortInstance, list[Statement[robosc.ProvideStatement]]]:
-        provided: dict[PortInstance, list[Statement[robosc.ProvideStatement]]] = {}
+    def _named(self) -> dict[PortInstance, set[PortEvent]]:
+        named: dict[PortInstance, set[PortEvent]] = {}
+        for instance in self:
+            for transition, _ in instance.transitions:
+                if isinstance(transition, robosc.ResultTransition):
+                    port = self.port(transition.communicationType, instance)
+                    row = event_of(transition.communicationType, transition.resultType)
+                    if port is not None and row is not None:
+                        named.setdefault(port, set()).add(row)
+        return named
+
+    @cached_property
+    def _provided(self) -> dict[tuple[PortInstance, bool], list[Statement[robosc.ProvideStatement]]]:
+        provided: dict[tuple[PortInstance, bool], list[Statement[robosc.ProvideStatement]]] = {}
         for statement in self.statements(robosc.ProvideStatement):
             port = self.port(statement.element.communicationType, statement.within)
             if port is not None:
-                provided.setdefault(port, []).append(statement)
+                provided.setdefault((port, bool(statement.element.feedback)), []).append(statement)
         return provided
 
 

@@ -68,6 +68,10 @@ def received_messages(
         yield action.interface, Section.FEEDBACK, [action.feedback]
         for end in (action.response, action.error, action.canceled):
             yield action.interface, Section.RESULT, [end]
+    for served in graph.serviceServers:
+        yield served.interface, Section.REQUEST, [served.request]
+    for performed in graph.actionServers:
+        yield performed.interface, Section.GOAL, [performed.request]
 
 
 def sent_messages(
@@ -80,6 +84,15 @@ def sent_messages(
         yield service.interface, Section.REQUEST, service.request
     for action in graph.actionClients:
         yield action.interface, Section.GOAL, action.request
+    for served in graph.serviceServers:
+        if served.response is not None:
+            yield served.interface, Section.RESPONSE, served.response
+    for performed in graph.actionServers:
+        if performed.feedback is not None:
+            yield performed.interface, Section.FEEDBACK, performed.feedback
+        for end in (performed.response, performed.error, performed.canceled):
+            if end is not None:
+                yield performed.interface, Section.RESULT, end
 
 
 def decides_with_data(graph: rosgraph.RosGraph) -> bool:

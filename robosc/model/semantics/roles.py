@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from robosc.base.files.suffixes import AUTOMATA
 from robosc.model import expression as ex
 from robosc.model import sct
+from robosc.model.semantics.communication import ANSWERS, REQUESTS
 from robosc.model.semantics.domains import domain
 from robosc.model.semantics.edges import edges_of
 
@@ -79,6 +80,12 @@ def component_name(event: sct.Event) -> str:
     return (plant_of(event).origin or "").rpartition(".")[0]
 
 
+def data_origin(event: sct.Event) -> str | None:
+    """Return the origin of the data plant of an event that the controller sends."""
+    origin = plant_of(event).origin
+    return f"{origin}.feedback" if origin and event.kind == sct.EventKind.replyFeedback else origin
+
+
 def assumptions(model: sct.SupervisoryControlModel) -> list[sct.Plant]:
     """Return the assumptions of a model."""
     return [plant for plant in model.plants if plant.kind == sct.PlantKind.assumption]
@@ -123,8 +130,8 @@ class Roles:
 
     @cached_property
     def triggers(self) -> tuple[sct.Event, ...]:
-        """Trigger events. The loop tries them after the cancels."""
-        return self._of(sct.EventKind.trigger)
+        """Triggers, and answers to clients. The loop tries them after the cancels."""
+        return self._of(sct.EventKind.trigger, *ANSWERS)
 
     @cached_property
     def silent(self) -> tuple[sct.Event, ...]:
@@ -147,6 +154,7 @@ class Roles:
             sct.EventKind.canceled,
             sct.EventKind.plain,
             sct.EventKind.input,
+            *REQUESTS,
         )
 
     @cached_property
@@ -171,7 +179,8 @@ class Roles:
     @cached_property
     def shared_topics(self) -> tuple[tuple[sct.Event, ...], ...]:
         """Groups of two or more triggers for one topic. At most one trigger of a group runs in a round."""
-        return tuple(events for events in _by_source(self.triggers) if len(events) > 1)
+        messages = (event for event in self.triggers if plant_of(event).kind == sct.PlantKind.message)
+        return tuple(events for events in _by_source(messages) if len(events) > 1)
 
     @cached_property
     def once_per_tick(self) -> tuple[sct.Event, ...]:
@@ -182,11 +191,14 @@ class Roles:
 
     @cached_property
     def data_plants(self) -> dict[sct.Event, sct.Plant]:
-        """Plant that selects a trigger's data, for each trigger with such a plant. Both have the same origin."""
+        """Plant that selects a trigger's data, for each trigger with such a plant. Both have the same origin.
+
+        The origin of the plant for the feedback of an action that the controller serves ends with `.feedback`.
+        """
         plants = {
             plant.origin: plant for plant in self.model.plants if plant.kind == sct.PlantKind.data and plant.origin
         }
-        origins = {event: plant_of(event).origin for event in self.triggers}
+        origins = {event: data_origin(event) for event in self.triggers}
         return {event: plants[origin] for event, origin in origins.items() if origin in plants}
 
     @cached_property

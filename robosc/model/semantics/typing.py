@@ -14,7 +14,14 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from robosc.model import expression as ex
 from robosc.model import robosc as rsc
 from robosc.model import rosgraph, sct
-from robosc.model.semantics.communication import data_type, event, port_event_of, section_of, sent_type
+from robosc.model.semantics.communication import (
+    data_type,
+    event,
+    port_event_of,
+    provided_event,
+    section_of,
+    sent_type,
+)
 from robosc.model.semantics.naming import escape_keyword
 from robosc.model.semantics.operators import CONDITIONS, Operator, TypeRule, operator_of
 from robosc.model.semantics.walks import copy_tree, fold, parts
@@ -151,8 +158,8 @@ def object_value_type(value: rsc.ObjectValue) -> Type:
     while isinstance(around, ex.Conditional):
         around = around.eContainer()
     if isinstance(around, rsc.DataStatement):
-        reference = around.communicationType
-        return provided_data_type(reference.communicationType if reference else None)
+        communication = _communication(around.communicationType)
+        return declared_type(data_type(communication, provided_event(around)))
     is_property = isinstance(around, rsc.ObjectPropertyValue) and around.property
     return declared_type(around.property.type) if is_property else UNKNOWN
 
@@ -169,8 +176,8 @@ def value_types(element: ex.Located) -> Sequence[Type]:
     """Return the types of `value` at a place in the model; none if there is no `value`.
 
     Inside an enum, `value` is the enum's source. Inside a transition, it is the data of its event; only the guard may
-    read that of a request. Inside a limit, it is the data of its message. In the condition of a requirement, it is the
-    data of each of its commands.
+    read that of an event that the controller sends. Inside a limit, it is the data of its message. In the condition of
+    a requirement, it is the data of each of its commands.
     """
     inside, around = None, element
     while around is not None:
@@ -179,15 +186,19 @@ def value_types(element: ex.Located) -> Sequence[Type]:
                 return (declared_type(around.type),)
             case rsc.ResultTransition():
                 in_guard = inside is not None and inside is around.guard
-                is_request = around.communicationType is not None and around.resultType == rsc.ResultType.request
-                if is_request and not in_guard:
+                communication = _communication(around.communicationType)
+                row = event(communication, around.resultType)
+                is_sent = around.resultType == rsc.ResultType.request if row is None else row.is_sent
+                if communication is not None and is_sent and not in_guard:
                     return ()
-                kind = event_data_type(_communication(around.communicationType), around.resultType)
+                kind = event_data_type(communication, around.resultType)
                 return () if kind is None else (kind,)
             case rsc.RequirementTransition():
                 named = around.event
                 row = None if named is None else port_event_of(named)
-                return (_sent(named.communicationType),) if row is not None and row.is_sent else ()
+                if named is None or row is None or not row.is_sent:
+                    return ()
+                return (declared_type(data_type(_communication(named.communicationType), row)),)
             case rsc.LimitStatement():
                 return (_sent(around.communicationType),)
             case rsc.CommunicationRequirement() if inside is around.condition and around.target is not None:

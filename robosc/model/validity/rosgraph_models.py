@@ -113,6 +113,8 @@ def _received_shapes(graph: rosgraph.RosGraph, _model: Model) -> Iterator[Fault]
         for client in graph.actionClients
         for reception in (client.feedback, client.response, client.error, client.canceled)
     ]
+    sources += [[server.request] for server in graph.serviceServers]
+    sources += [[server.request] for server in graph.actionServers]
     reactions: dict[Any, list[Any]] = defaultdict(list)
     for reaction in graph.reactions:
         reactions[reaction.event] += [*([reaction.guard] if reaction.guard else []), *reaction.needs]
@@ -206,6 +208,8 @@ CHECKS: Checks = {
     rosgraph.Publisher: [_interface(rosgraph.InterfaceKind.message)],
     rosgraph.ServiceClient: [_interface(rosgraph.InterfaceKind.service)],
     rosgraph.ActionClient: [_interface(rosgraph.InterfaceKind.action)],
+    rosgraph.ServiceServer: [_interface(rosgraph.InterfaceKind.service)],
+    rosgraph.ActionServer: [_interface(rosgraph.InterfaceKind.action)],
     rosgraph.WireAccess: [_WHOLE, _BASIC_FIELD],
     rosgraph.ErrorReason: [_reason],
     rosgraph.IfReadable: [_ALTERNATIVE],

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.model import expression as ex
 from robosc.model import sct
-from robosc.model.semantics.communication import IDLE
+from robosc.model.semantics.communication import IDLE, REQUESTS
 from robosc.model.semantics.domains import domain
 from robosc.model.semantics.durations import LONGEST, SHORTEST, UNITS
 from robosc.model.semantics.edges import edges_of
@@ -54,11 +54,11 @@ def _end_of_action(plant: sct.Plant, _model: Model) -> Iterator[Fault]:
 
 
 def _assumption(plant: sct.Plant, _model: Model) -> Iterator[Fault]:
-    """Check that an assumption is about messages, feedback and responses, and has one location."""
-    kinds = (sct.EventKind.response, sct.EventKind.feedback)
+    """Check that an assumption is about messages, feedback, responses and requests, and has one location."""
+    kinds = (sct.EventKind.response, sct.EventKind.feedback, *REQUESTS)
     fits = len(plant.locations) == 1 and all(edge.event.kind in kinds for edge in edges_of(plant))
     if plant.kind == sct.PlantKind.assumption and not fits:
-        yield plant, f"the assumption '{plant.name}' needs one location, and edges for responses and feedback only"
+        yield plant, f"the assumption '{plant.name}' needs one location, and edges for data from the robot only"
 
 
 def _initial_value(variable: sct.DiscreteVariable, model: Model) -> Iterator[Fault]:

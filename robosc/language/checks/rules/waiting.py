@@ -15,7 +15,7 @@ from robosc.language.checks.fleets import reference_key
 from robosc.language.checks.libraries import instances
 from robosc.language.checks.rule import Finding, rule
 from robosc.model import robosc as rsc
-from robosc.model.semantics.communication import data_type, event
+from robosc.model.semantics.communication import CALLED, data_type, event
 from robosc.model.semantics.cone_of_influence import accesses
 from robosc.model.semantics.instances import InstanceVariable
 from robosc.model.semantics.naming import escape_keyword
@@ -49,7 +49,7 @@ def _states_without_end(known: Instances, places: Places) -> Iterator[Finding]:
             if transition.target is None or not _is_on(transition, rsc.ResultType.cancel):
                 continue
             action = communication_of(transition.communicationType)
-            if action is None:
+            if not isinstance(action, rsc.Action):
                 continue
             passed = (
                 state
@@ -92,7 +92,9 @@ def _forbidden_ends(known: Instances, places: Places) -> Iterator[Finding]:
         named = {(known.port(other.event.communicationType, statement.within), kind_of(other.event)) for other in every}
         for transition in every:
             port = known.port(transition.event.communicationType, statement.within)
-            if transition.target is None or port is None or kind_of(transition.event) != rsc.ResultType.cancel:
+            if transition.target is None or port is None or not isinstance(port.communication, rsc.Action):
+                continue
+            if kind_of(transition.event) != rsc.ResultType.cancel:
                 continue
             there = {
                 kind_of(other.event)
@@ -122,7 +124,8 @@ def _variables_read(known: Instances, places: Places) -> Iterator[Finding]:
                 if _is_on(transition, rsc.ResultType.cancel)
                 else None
             )
-            for assignment in transition.assignments if port is not None else ():
+            is_cancel = port is not None and isinstance(port.communication, rsc.Action)
+            for assignment in transition.assignments if is_cancel else ():
                 variable = assigned_variable(assignment)
                 readers = (
                     readers_by_variable.get(InstanceVariable(instance, variable), ()) if variable is not None else ()
@@ -167,7 +170,7 @@ def answer_unheard(base: rsc.Base) -> Iterator[Finding]:
             if target is None or target is state or not _is_on(transition, rsc.ResultType.request):
                 continue
             port = known.port(transition.communicationType, instance)
-            if port is None or isinstance(port.communication, rsc.Message) or port in heard:
+            if port is None or not isinstance(port.communication, CALLED) or port in heard:
                 continue
             unread = port not in restricted and (instance, target) not in states_read
             if unread and _answers_nothing(port.communication) and not _commands(target, instance, port, known):
@@ -266,7 +269,7 @@ def failure_unheard(base: rsc.Base) -> Iterator[Finding]:
             if state is None or target is None or target is state or not _is_on(transition, rsc.ResultType.response):
                 continue
             port = known.port(transition.communicationType, instance)
-            if port is None or isinstance(port.communication, rsc.Message):
+            if port is None or not isinstance(port.communication, CALLED):
                 continue
             missing = _unheard(state, common, transition.communicationType, port in cancelable)
             place = places.new(transition, instance, port.communication) if missing else None
