@@ -12,7 +12,7 @@ from robosc.model import sct
 from robosc.model.semantics.communication import ANSWERS, REQUESTS
 from robosc.model.semantics.failures import brings_data, possible_reasons
 from robosc.model.semantics.messages import sent_messages
-from robosc.model.semantics.roles import assumptions, event_name, is_goal, plant_of
+from robosc.model.semantics.roles import assumptions, event_name, plant_of
 from robosc.run.scenario_tests.reading import (
     Acceptance,
     Every,
@@ -112,7 +112,7 @@ def _about_event(line: Line, event: sct.Event, *, is_repeated: bool) -> Iterator
     elif isinstance(line, SentCommand) and not event.controllable:
         hint = f"write `response to {name(plant_of(event))} sent`" if event.kind == sct.EventKind.request else None
         yield line.fault(f"the {words(event)} comes from the robot, not from the controller", hint)
-    elif isinstance(line, Acceptance) and not is_goal(event):
+    elif isinstance(line, Acceptance) and plant_of(event).kind != sct.PlantKind.actionServer:
         yield line.fault(f"the {words(event)} is no goal for the controller", "only an `outgoing action` has such goals")
     elif isinstance(line, Stop) and not is_repeated:
         yield line.fault(f"no `every` before this line repeats the {words(event)}", "leave it out")

@@ -542,7 +542,8 @@ class Player(Drive):
         raise TypeError(f"{type(line).__name__} is no expectation")
 
     def _accepted(self, line: Acceptance, event: sct.Event) -> Diagnostic | None:
-        answers = [is_accepted for goal, is_accepted in self._goals[self._goals_before :] if goal is event]
+        since = self._goals[self._goals_before :]
+        answers = [is_accepted for goal, is_accepted in since if plant_of(goal) is plant_of(event)]
         if line.expected in answers:
             return None
         called = f"goal of `{self._called(event)}`"

@@ -421,6 +421,8 @@ class _Reader:
                 self._fault(
                     expected, "this is not a single condition", "close each bracket, and write a comment after `//`"
                 )
+        elif match["taken"] and match["kind"] not in (None, "request"):
+            self._fault(expected, "only a goal is accepted or rejected", "write `inspect accepted` or `inspect rejected`")
         elif match["taken"]:
             accepted = match["taken"] == "accepted"
             yield Acceptance(line.file, line.span, event_in_words(match), accepted, within=within)

@@ -68,7 +68,7 @@ class EventName(NamedTuple):
 def choice_of(name: EventName) -> Plant:
     """Return the plant that chooses the data of an event. All ends of a goal for the controller share theirs."""
     is_feedback = name.name == "c_feedback"
-    return Plant("data", f"{name.plant.origin} feedback" if is_feedback else name.plant.origin)
+    return Plant("data", f"{name.plant.origin}.feedback" if is_feedback else name.plant.origin)
 
 
 class Condition(NamedTuple):

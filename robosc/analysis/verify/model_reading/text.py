@@ -143,9 +143,18 @@ class _TextReading:
         self.plants = plants
         self.machine = Machine()
         self.ports: dict[Plant, _Port] = {}
+        #: Events that a transition of a component names.
+        self.named_events: set[EventName] = set()
         self.statements: dict[Plant, Sequence[tuple[robosc.ProvideStatement, Environment]]] = {}
 
     def run(self) -> Machine:
+        for instance in self.names:
+            transitions = [*instance.behaviour(robosc.ResultTransition)]
+            transitions += (transition for state in instance.behaviour(robosc.State) for transition in state.transitions)
+            for transition in transitions:
+                if isinstance(transition, robosc.ResultTransition):
+                    named = self.of(transition.communicationType, transition.resultType, instance.place)
+                    self.named_events.add(named)
         for instance in self.names:
             for communication in instance.of(robosc.CommunicationType):
                 self.communication(instance, communication)
@@ -156,7 +165,6 @@ class _TextReading:
         for instance in self.names:
             if instance.of(robosc.ComponentBehaviour):
                 self.behaviour(instance)
-        self.never_named()
         self.provided()
         self.assumed()
         self.required()
@@ -179,13 +187,30 @@ class _TextReading:
             comes = communication.direction == robosc.MessageDirection.outgoing
             steps = {"u_response" if comes else "c_trigger": {"ready": "ready"}}
         else:
-            steps = _PHASES[plant.kind]
+            steps = {name: step for name, step in _PHASES[plant.kind].items() if self.is_possible(EventName(plant, name))}
         places = dict.fromkeys(name for step in steps.values() for pair in step.items() for name in pair)
+        if "canceling" in places and "u_cancel" not in steps and plant.kind in SERVERS:
+            del places["canceling"]  # no client cancels a goal
         first = next(iter(places))
-        slot = self.locations(plant, tuple(places), first, [first], communication)
+        # A client that waits does not make the work of the robot incomplete.
+        marked = [*places] if plant.kind in SERVERS else [first]
+        slot = self.locations(plant, tuple(places), first, marked, communication)
         for name, step in steps.items():
             event = self.event(plant, name, communication)
-            event.participants.append(_phases(slot, step, communication))
+            known = {origin: end for origin, end in step.items() if origin in places}
+            is_rejected = plant.kind == "actionServer" and name == "u_request"
+            is_rejected = is_rejected and EventName(plant, name) not in self.named_events
+            event.participants.append(_phases(slot, {} if is_rejected else known, communication))
+
+    def is_possible(self, name: EventName) -> bool:
+        """Return whether an event exists: an answer of the controller only if a transition names it.
+
+        A client can cancel a goal if a transition names the cancel or the end after it.
+        """
+        if name.plant.kind not in SERVERS or name.name == "u_request":
+            return True
+        causes = {name, EventName(name.plant, "c_canceled")} if name.name == "u_cancel" else {name}
+        return bool(causes & self.named_events)
 
     def locations(
         self, plant: Plant, names: tuple[str, ...], initial: str, marked: Iterable[str], source: ex.Located
@@ -284,22 +309,6 @@ class _TextReading:
             }
             ignored = name.plant != instance.plant and not _is_permitted(name)
             self.machine.events[name].participants.append(self.reaction(name, ordered, instance, ignored))
-
-    def never_named(self) -> None:
-        """Exclude the answers that no transition names, goals that none accepts, and cancels that none reacts to."""
-        named = {
-            name
-            for name, event in self.machine.events.items()
-            if any(participant.component is not None for participant in event.participants)
-        }
-        for name, event in self.machine.events.items():
-            if name.plant.kind not in SERVERS:
-                continue
-            # A request for a service is always taken.
-            causes = {name, EventName(name.plant, "c_canceled")} if name.name == "u_cancel" else {name}
-            is_taken = name.plant.kind == "serviceServer" and name.name == "u_request"
-            if not is_taken and not causes & named:
-                event.participants.append(_refused(event.element))
 
     def timer(self, transition: robosc.TimedTransition, where: str | None, instance: Instance) -> Timer:
         without = frozenset(self.of(message, robosc.ResultType.response, instance.place) for message in transition.without)
@@ -758,10 +767,6 @@ def _is_permitted(name: EventName) -> bool:
     if name.plant.kind in SERVERS:
         return name.name.startswith("c_") or (name.plant.kind == "actionServer" and name.name == "u_request")
     return name.name == "c_trigger"
-
-
-def _refused(source: ex.Located) -> Participant:
-    return Participant(lambda *_: None, frozenset(), source)
 
 
 def _phases(slot: Slot, step: Mapping[str, str], source: ex.Located) -> Participant:
