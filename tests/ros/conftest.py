@@ -33,6 +33,7 @@ RUNS = (
     "with_guard",
     "simulated",
     "graph",
+    "served",
     "model_workspace",
     "base",
 )

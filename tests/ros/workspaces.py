@@ -37,6 +37,8 @@ LATCHED = HERE / "latched"
 #: A component in a delayed executor, and components in an executor that queues the callbacks of timers.
 LATE = HERE / "late_arrival"
 QUEUED = HERE / "events_executor"
+#: A robot that serves services and actions.
+SERVING = HERE / "serving"
 #: A managed node with times, stored data, parameters, and a command that it sends on change.
 MANAGED = HERE / "managed"
 #: A robot with assumptions, limits, conditions on the data of commands, and comparisons with stored values.
@@ -92,6 +94,9 @@ def _packages(target: str) -> list[Package]:
         Package("keeper_controller", HERE / "kept" / "keeper.rscd", target),
         Package("waypoints_controller", RUNTIME / "waypoints.rscd", target, with_tests=True),
         Package("latch_controller", LATCHED / "latch.rscd", target, LATCHED / "controller-config.json"),
+        Package(
+            "clerk_controller", SERVING / "clerk.rscd", target, SERVING / "controller-config.json", own_types=True
+        ),
     ]
 
 
@@ -128,6 +133,7 @@ ROS2_PACKAGES = [
     Package("hauler_controller", RESTRICTED / "hauler.rscd", "ros2", RESTRICTED / "controller-config.json"),
     Package("hauler_layer", RESTRICTED / "hauler.rscd", "ros2-layer", RESTRICTED / "layer-config.json"),
     Package("managed_hauler", RESTRICTED / "hauler.rscd", "ros2", RESTRICTED / "managed-config.json"),
+    Package("managed_clerk", SERVING / "clerk.rscd", "ros2", SERVING / "managed-config.json", own_types=True),
     Package("managed_watch", MANAGED / "watch.rscd", "ros2", MANAGED / "controller-config.json"),
 ]
 

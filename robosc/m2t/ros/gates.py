@@ -9,6 +9,7 @@ from robosc.m2t.c.comments import string_literal
 from robosc.m2t.c.expressions import CPrinter, integer_type
 from robosc.m2t.ros.names import CppNames
 from robosc.model import engine, rosgraph, sct
+from robosc.model.semantics.component_parts import answers
 from robosc.model.semantics.printing import Printed
 from robosc.model.semantics.roles import plant_of
 
@@ -55,8 +56,9 @@ def gates(graph: rosgraph.RosGraph, node: GeneratedNode, executed: engine.Engine
     sendings = [sending for publisher in graph.publishers for sending in publisher.sendings]
     sendings += [service.request for service in graph.serviceClients]
     sendings += [action.request for action in graph.actionClients]
-    messages = [message for publisher in node.publishers for message in publisher.messages]
-    messages += [client.request for client in node.clients]
+    servers = (*graph.serviceServers, *graph.actionServers)
+    sendings += [sending for server in servers for sending in answers(server).values()]
+    messages = [message for _, message in node.sent]
     printer = _Printer(CppNames(graph))
     events = {event.event: event for event in executed.events}
     return {

@@ -15,6 +15,7 @@ from robosc.m2t.ros.names import CppNames
 from robosc.model import engine, rosgraph, sct
 from robosc.model import expression as ex
 from robosc.model.reflection import tree
+from robosc.model.semantics.component_parts import answers
 from robosc.model.semantics.definition import reported_variables
 from robosc.model.semantics.messages import (
     EACH,
@@ -44,6 +45,8 @@ if TYPE_CHECKING:
 
     from robosc.model.semantics.messages import Path
 
+#: Method of an action's server that sends an answer.
+_ANSWERED_BY = {"feedback": "publish", "response": "succeed", "error": "abort", "canceled": "canceled"}
 #: Method that writes a field unchanged.
 _HAND_ON = "hand_on"
 
@@ -80,7 +83,7 @@ class EventHandler:
     variables are read; "" is no copy. A handler that `reads_elements` of arrays changes only a copy. The event does not
     happen if an element is missing; inputs with elements are among the reactions, if a transition reads them. A handler
     that `reads_reason` reads the reason of an error. An event that is `assumed` may violate an assumption; `component`
-    is a literal.
+    is a literal. The inputs of an event that is `decided` decide whether it can happen.
     """
 
     event: str
@@ -93,6 +96,7 @@ class EventHandler:
     reads_reason: bool = False
     assumed: bool = False
     component: str = ""
+    decided: bool = False
 
 
 @dataclass(frozen=True)
@@ -204,6 +208,35 @@ class Client:
 
 
 @dataclass(frozen=True)
+class Answer:
+    """An answer of a server: `method` of its class, and the data. `kind` is `response` or `feedback`."""
+
+    method: str
+    kind: str
+    message: Message
+
+
+@dataclass(frozen=True)
+class Server:
+    """A service or an action that the node serves.
+
+    `request` is a request or a goal. `cancel` is the handler of a client's cancel, None if the node accepts none.
+    """
+
+    word: str
+    name: str
+    interface: rosgraph.Interface
+    request: EventHandler
+    cancel: EventHandler | None
+    answers: list[Answer]
+
+    @property
+    def is_action(self) -> bool:
+        """Whether it is an action."""
+        return self.interface.kind == rosgraph.InterfaceKind.action
+
+
+@dataclass(frozen=True)
 class LastMessage:
     """A message that is sent in spite of all requirements, and the requirements that this overrides."""
 
@@ -305,6 +338,8 @@ class GeneratedNode:
         for action in graph.actionClients:
             self._carriers[action.feedback] = "feedback", action.interface
             self._carriers |= dict.fromkeys([action.error, action.canceled], ("response", action.interface))
+        self._carriers |= {server.request: ("request", server.interface) for server in graph.serviceServers}
+        self._carriers |= {server.request: ("goal", server.interface) for server in graph.actionServers}
         self.components = [
             (self._names.components[component], list(map(self._variable, variables)))
             for component, variables in self._names.stored.items()
@@ -330,6 +365,7 @@ class GeneratedNode:
         self.publishers = [self._publisher(publisher) for publisher in graph.publishers]
         self.services = [self._client(client) for client in graph.serviceClients]
         self.actions = [self._client(client) for client in graph.actionClients]
+        self.servers = [self._server(server) for server in (*graph.serviceServers, *graph.actionServers)]
         self.shutdown = [self._last(name) for name in on_shutdown]
         self.instead = [self._last(name) for name in on_withheld]
         self.on_blocked = [self._last(name) for name in on_blocked]
@@ -340,6 +376,9 @@ class GeneratedNode:
         for action in graph.actionClients:
             outside |= {action.request.event, action.feedback.event, action.response.event}
             outside |= {action.error.event, action.canceled.event}
+        for server in (*graph.serviceServers, *graph.actionServers):
+            outside |= {server.request.event, *(sending.event for sending in answers(server).values())}
+            outside |= {server.cancel} if isinstance(server, rosgraph.ActionServer) else set()
         self.internal = [self._handler(event) for event in self._reactions if event not in outside]
         shown = reported_variables(graph)
         self.reported = [
@@ -354,6 +393,15 @@ class GeneratedNode:
         return [*self.services, *self.actions]
 
     @property
+    def sent(self) -> list[tuple[Publisher | Client | Server, Message]]:
+        """All data that the node sends, with its topic, service or action."""
+        sent: list[tuple[Publisher | Client | Server, Message]] = [
+            (publisher, message) for publisher in self.publishers for message in publisher.messages
+        ]
+        sent += [(client, client.request) for client in self.clients]
+        return sent + [(server, answer.message) for server in self.servers for answer in server.answers]
+
+    @property
     def assumed(self) -> bool:
         """Whether the model has assumptions."""
         return bool(assumptions(self._graph.model))
@@ -361,15 +409,12 @@ class GeneratedNode:
     @property
     def may_withhold(self) -> bool:
         """Whether the data of a command may be impossible to send."""
-        messages = [message for publisher in self.publishers for message in publisher.messages]
-        messages += [client.request for client in self.clients]
-        return any(message.may_fail or message.inputs for message in messages)
+        return any(message.may_fail or message.inputs for _, message in self.sent)
 
     @property
     def hands_on(self) -> bool:
         """Whether the node sends received objects unchanged."""
-        messages = [message for publisher in self.publishers for message in publisher.messages]
-        messages += [client.request for client in self.clients]
+        messages = [message for _, message in self.sent]
         groups = [alternative.fields for message in messages for alternative in message.alternatives]
         groups += [limit.fields for message in messages for limit in message.limits]
         writings = (writing for fields in groups for _, several in fields for writing in several)
@@ -383,16 +428,12 @@ class GeneratedNode:
         ]
 
     @property
-    def decided(self) -> list[tuple[Publisher | Client, Message]]:
+    def decided(self) -> list[tuple[Publisher | Client | Server, Message]]:
         """Commands on which the supervisor decides with their data."""
-        sent: list[tuple[Publisher | Client, Message]] = [
-            (publisher, message) for publisher in self.publishers for message in publisher.messages
-        ]
-        sent += [(client, client.request) for client in self.clients]
-        return [(owner, message) for owner, message in sent if message.inputs]
+        return [(owner, message) for owner, message in self.sent if message.inputs]
 
     @property
-    def examined(self) -> list[tuple[Publisher | Client, Message]]:
+    def examined(self) -> list[tuple[Publisher | Client | Server, Message]]:
         """Commands whose data a layer limits, or with which the supervisor decides."""
         decided = [message.event for _, message in self.decided]
         return [*((owner, message) for owner, message in self.limited if message.event not in decided), *self.decided]
@@ -409,7 +450,8 @@ class GeneratedNode:
     @property
     def interfaces(self) -> list[rosgraph.Interface]:
         """Types in use, each once, by package and name."""
-        used: list[Subscription | Publisher | Client] = [*self.subscriptions, *self.publishers, *self.clients]
+        used: list[Subscription | Publisher | Client | Server] = [*self.subscriptions, *self.publishers, *self.clients]
+        used += self.servers
         by_name = {(kind.package, kind.type, kind.kind.name): kind for kind in (end.interface for end in used)}
         return [by_name[key] for key in sorted(by_name)]
 
@@ -539,6 +581,7 @@ class GeneratedNode:
             data,
             assumed=any(reason.assumption is not None for reason in self._events[event].reasons),
             component=string_literal(component_name(event)),
+            decided=self._events[event].guard.data is not None,
         )
 
     def _merged(self, reactions: Sequence[rosgraph.Reaction], copy: str) -> list[Reaction]:
@@ -610,6 +653,25 @@ class GeneratedNode:
             self._names.c.enumerator(client.reset),
         )
 
+    def _server(self, server: rosgraph.ServiceServer | rosgraph.ActionServer) -> Server:
+        cancel = server.cancel if isinstance(server, rosgraph.ActionServer) else None
+        word = self._sent.fresh(self._word(server.request.event))
+        return Server(
+            word,
+            server.identifier,
+            server.interface,
+            self._reception(server.request),
+            None if cancel is None else self._handler(cancel),
+            [
+                Answer(
+                    _ANSWERED_BY[answer] if isinstance(server, rosgraph.ActionServer) else "respond",
+                    "feedback" if answer == "feedback" else "response",
+                    self._message(sending, f"{word}_{answer}"),
+                )
+                for answer, sending in answers(server).items()
+            ],
+        )
+
     def _last(self, name: str) -> LastMessage:
         sending = find_message(self._graph, name)
         assert sending is not None
@@ -621,14 +683,18 @@ class GeneratedNode:
         overrides = [reason.text for reason in reasons if reason.kind == engine.Origin.requirement]
         return LastMessage(publisher, message, overrides)
 
-    def _message(self, sending: rosgraph.Sending) -> Message:
-        plant: sct.Plant = sending.event.eContainer()
+    def _word(self, event: sct.Event) -> str:
+        """Return a word for the communication of an event."""
+        plant: sct.Plant = event.eContainer()
+        return self._names.c.member(plant).removeprefix(f"{plant.kind.name.removesuffix('Server')}_")
+
+    def _message(self, sending: rosgraph.Sending, word: str | None = None) -> Message:
         fields = fields_set(sending)
         values = [part for field in fields for part in (field.condition, field.value) if part is not None]
         reads = any(map(reads_elements, [*values, *limit_expressions(sending)]))
         doubles, stored = doubles_read(sending), stored_doubles(sending)
         return Message(
-            self._sent.fresh(self._names.c.member(plant).removeprefix(f"{plant.kind.name}_")),
+            self._sent.fresh(word or self._word(sending.event)),
             self._names.c.enumerator(sending.event),
             self._events[sending.event].remarks,
             [self._alternative(provided) for provided in sending.alternatives],

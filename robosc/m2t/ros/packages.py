@@ -55,6 +55,7 @@ _HEADERS = {
     "robosc_ros{ros}/alarm": {"timed"},
     "robosc_ros{ros}/action_client": {"controller", "actions"},
     "robosc_ros{ros}/action_proxy": {"layer", "actions"},
+    "robosc_ros{ros}/action_server": {"controller", "served_actions"},
     "robosc_ros{ros}/arrivals": {"controller", "ros2", "subscriptions", "timed"},
     "robosc_ros{ros}/countdown": {"controller", "waits"},
     "robosc_ros{ros}/finite": {"composes", "hands_on"},
@@ -67,6 +68,7 @@ _HEADERS = {
     "robosc_ros{ros}/run_controller": {"controller", "ros1"},
     "robosc_ros{ros}/service_client": {"controller", "services"},
     "robosc_ros{ros}/service_proxy": {"layer", "services"},
+    "robosc_ros{ros}/service_server": {"controller", "served_services"},
     "robosc_ros{ros}/shutdown_hook": {"layer", "actions", "ros2"},
     "robosc_ros{ros}/unit_quaternions": {"quaternions", "ros1"},
 }
@@ -273,7 +275,7 @@ class RosTarget:
     ) -> list[str]:
         """Return the headers in `include` that the node includes, without suffix."""
         if self.kind == "controller":
-            sent = [end.interface for ends in (node.publishers, node.clients) for end in ends]
+            sent = [owner.interface for owner, _ in node.sent]
         else:
             sent = [last.publisher.interface for last in node.on_blocked]
         composes = self.kind == "controller" or node.on_blocked or node.limited or node.decided
@@ -293,6 +295,8 @@ class RosTarget:
             "managed": configuration.lifecycle,
             "quaternions": (composes and defaults) or _turned(node),
             "reports": configuration.publish_state_information or reported_statuses or blocks,
+            "served_actions": any(server.is_action for server in node.servers),
+            "served_services": any(not server.is_action for server in node.servers),
             "services": node.services,
             "state": configuration.publish_state_information,
             "statuses": reported_statuses,

@@ -75,12 +75,12 @@ def preconditions(models: Models, configuration: Configuration, kind: str, ros: 
         hint = 'leave out "publishStateInformation": false'
         findings.append(configuration.error(("typedState",), '"typedState" needs "publishStateInformation"', hint))
     findings += _violations(graph, configuration)
-    findings += _served(graph, kind)
     if kind == "controller":
         name = configuration.package_name(graph)
         return [*findings, *_package(graph, configuration, name), *_settings(graph, configuration)]
     return [
         *findings,
+        *_served(graph),
         *_package(graph, configuration, configuration.layer_name(graph)),
         *_shared_topics(graph),
         *_unsendable(graph, configuration, "onBlocked", configuration.on_blocked),
@@ -91,14 +91,14 @@ def preconditions(models: Models, configuration: Configuration, kind: str, ros: 
     ]
 
 
-def _served(graph: rosgraph.RosGraph, kind: str) -> Iterator[Diagnostic]:
-    """Return errors on services and actions that a node would have to serve."""
+def _served(graph: rosgraph.RosGraph) -> Iterator[Diagnostic]:
+    """Return errors on services and actions that the controller serves. A layer does not see their clients."""
     servers: list[tuple[ex.Located, str, str]] = [
         *((server, server.identifier, "service") for server in graph.serviceServers),
         *((server, server.identifier, "action") for server in graph.actionServers),
     ]
     for server, name, word in servers:
-        message = f"the {kind} cannot serve the {word} `{name}` yet"
+        message = f"the layer does not serve the {word} `{name}`"
         yield _error(server, message, f"leave `outgoing {word}` out, or choose another target")
 
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from robosc.m2t.ros.gates import Gate
-    from robosc.m2t.ros.node import Client, GeneratedNode, Subscription
+    from robosc.m2t.ros.node import Client, GeneratedNode, Server, Subscription
     from robosc.model import rosgraph
 
 
@@ -41,28 +41,29 @@ class Status:
     state: str | None
     stateless: str
     variables: Sequence[tuple[str, str]]
-    #: Commands to the component, and its incoming topics and clients.
+    #: Commands to the component, and its incoming topics, clients and servers.
     commands: list[Command]
     topics: list[Subscription]
     clients: list[Client]
+    servers: list[Server]
     #: Topics of its commands.
     commanded: list[str]
 
     def watched(self, version: int) -> list[str]:
         """Return the topics, services and actions whose faults a ROS version reports."""
         names = [*(topic.topic for topic in self.topics), *self.commanded]
-        return names if version == 1 else [*names, *(client.name for client in self.clients)]
+        if version == 1:
+            return [*names, *(f"{server.name}/status" for server in self.servers if server.is_action)]
+        return [*names, *(end.name for end in (*self.clients, *self.servers))]
 
 
 def statuses(graph: rosgraph.RosGraph, node: GeneratedNode, gates: Mapping[rosgraph.Sending, Gate]) -> list[Status]:
     """Return the status of each component of a graph whose commands have these gates."""
     heard = dict(zip(graph.subscriptions, node.subscriptions, strict=True))
     called = dict(zip([*graph.serviceClients, *graph.actionClients], node.clients, strict=True))
+    served = dict(zip([*graph.serviceServers, *graph.actionServers], node.servers, strict=True))
     actions = {client.request.event: client for client in node.clients if client.cancel}
-    messages = [message for publisher in node.publishers for message in publisher.messages]
-    failing = {
-        message.event for message in [*messages, *(client.request for client in node.clients)] if message.may_fail
-    }
+    failing = {message.event for _, message in node.sent if message.may_fail}
     reported = {component.name: component for component in node.reported}
     topics = {sending: publisher.topic for publisher in graph.publishers for sending in publisher.sendings}
     words = Names()
@@ -85,6 +86,7 @@ def statuses(graph: rosgraph.RosGraph, node: GeneratedNode, gates: Mapping[rosgr
             ],
             [heard[topic] for topic in parts.topics],
             [called[client] for client in parts.clients],
+            [served[server] for server in parts.servers],
             list(dict.fromkeys(topics[sending] for sending in parts.commands if sending in topics)),
         )
         for parts in components(graph)

@@ -1,4 +1,4 @@
-"""Parts of each component of a robot for a node's reports: variables, commands, topics and clients."""
+"""Parts of each component of a robot for a node's reports: variables, commands, topics, clients and servers."""
 
 from __future__ import annotations
 
@@ -28,10 +28,11 @@ class Parts:
     name: str
     plant: sct.Plant | None
     stored: Sequence[rosgraph.NodeVariable]
-    #: Messages, requests of services, goals of actions.
+    #: Messages, requests of services, goals of actions, answers of servers.
     commands: Sequence[rosgraph.Sending]
     topics: Sequence[rosgraph.Subscription]
     clients: Sequence[rosgraph.ServiceClient | rosgraph.ActionClient]
+    servers: Sequence[rosgraph.ServiceServer | rosgraph.ActionServer]
 
 
 def components(graph: rosgraph.RosGraph) -> list[Parts]:
@@ -42,13 +43,16 @@ def components(graph: rosgraph.RosGraph) -> list[Parts]:
     clients: list[rosgraph.ServiceClient | rosgraph.ActionClient] = [*graph.serviceClients, *graph.actionClients]
     sendings = [sending for publisher in graph.publishers for sending in publisher.sendings]
     sendings += [client.request for client in clients]
+    servers: list[rosgraph.ServiceServer | rosgraph.ActionServer] = [*graph.serviceServers, *graph.actionServers]
+    sendings += [sending for server in servers for sending in answers(server).values()]
     listening = [
         (component_name(reception.event), topic) for topic in graph.subscriptions for reception in topic.receptions
     ]
     topics = _grouped(dict.fromkeys(listening))
     commands = _grouped((component_name(sending.event), sending) for sending in sendings)
     called = _grouped((component_name(client.request.event), client) for client in clients)
-    for name in [*topics, *commands]:
+    served = _grouped((component_name(server.request.event), server) for server in servers)
+    for name in [*topics, *commands, *served]:
         plants.setdefault(name, None)
     stored = reported_variables(graph)
     return [
@@ -59,14 +63,22 @@ def components(graph: rosgraph.RosGraph) -> list[Parts]:
             commands.get(name, []),
             topics.get(name, []),
             called.get(name, []),
+            served.get(name, []),
         )
         for name, plant in plants.items()
     ]
 
 
+def answers(server: rosgraph.ServiceServer | rosgraph.ActionServer) -> dict[str, rosgraph.Sending]:
+    """Return the answers of a server that exist, in the order of its plant, by their words in the language."""
+    possible = {word: getattr(server, word, None) for word in ("feedback", "response", "error", "canceled")}
+    return {word: sending for word, sending in possible.items() if sending is not None}
+
+
 def request(sending: rosgraph.Sending) -> str:
-    """Return the model's name for the event of a command: `request to move`."""
-    return f"request to {sending.name}"
+    """Return the model's name for the event of a command: `request to move`, or `response to start` of a server."""
+    word = "request" if sending.event.kind == sct.EventKind.trigger else sending.event.name.removeprefix("c_")
+    return f"{word} to {sending.name}"
 
 
 def _grouped(owned: Iterable[tuple[str, _Element]]) -> dict[str, list[_Element]]:

@@ -17,11 +17,13 @@ if TYPE_CHECKING:
     from robosc.run.node_tests.samples import IncomingKind
     from robosc.run.runtime.core.port import (
         CallHandlers,
+        Client,
         ComponentStatus,
         Endpoint,
         GoalHandlers,
         GoalOutcome,
         Message,
+        Server,
     )
 
 
@@ -158,7 +160,7 @@ class Robot:
         """Return 0: no test reads statuses."""
         return 0
 
-    def serving_nodes(self, client: rosgraph.ServiceClient | rosgraph.ActionClient) -> list[tuple[str, str]]:  # noqa: ARG002  # a trace has no other nodes
+    def serving_nodes(self, element: Client | Server) -> list[tuple[str, str]]:  # noqa: ARG002  # a trace has no other nodes
         """Return nothing: there is no other node."""
         return []
 

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from robosc.language.configuration import Configuration
     from robosc.model import rosgraph
+    from robosc.run.runtime.core.port import Server
 
 
 def run_controller(
@@ -90,11 +91,13 @@ def _node(name: str, graph: rosgraph.RosGraph, configuration: Configuration, arg
 
 def _started(name: str, graph: rosgraph.RosGraph, *, shows: bool) -> str:
     """Return the start message for the user: connections of the node, how to view it, how to stop it."""
+    servers: list[Server] = [*graph.serviceServers, *graph.actionServers]
     parts = (
         ("hears", [subscription.topic for subscription in graph.subscriptions]),
         ("sends", [publisher.topic for publisher in graph.publishers]),
         ("calls", [client.identifier for client in graph.serviceClients]),
         ("starts", [client.identifier for client in graph.actionClients]),
+        ("serves", [server.identifier for server in servers]),
     )
     connected = "; ".join(f"{verb} {', '.join(dict.fromkeys(names))}" for verb, names in parts if names)
     look = " `robosc view` shows it decide." if shows else ""

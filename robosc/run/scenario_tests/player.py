@@ -355,7 +355,7 @@ class Player(Drive):
         else:
             self._goals.append((server.request.event, self._controller.request_goal(server, data)))
 
-    def _ask_to_cancel(self, event: sct.Event) -> dict[str, Any]:
+    def _ask_to_cancel(self, event: sct.Event) -> None:
         """Let a client ask to cancel the goal of an action that the controller serves."""
         [server] = [action for action in self._graph.actionServers if plant_of(action.request.event) is plant_of(event)]
         if not self._controller.request_cancel(server):
@@ -364,7 +364,6 @@ class Player(Drive):
                 hint = f"write a transition `on cancel from {called}` in the model"
                 raise NamingError("the controller rejects each cancel: no transition of the model names it", hint)
             raise NamingError(f"`{called}` has no goal to cancel", "a client can cancel an accepted goal once")
-        return {}
 
     # Failures
 

@@ -152,7 +152,7 @@ def test_numbers_arrays_fields_and_json(
         assert json.loads(told) == text
 
 
-@pytest.mark.parametrize("source", ["calls.cpp", "goals.cpp", "timeouts.cpp", "transitions.cpp"])
+@pytest.mark.parametrize("source", ["calls.cpp", "goals.cpp", "servers.cpp", "timeouts.cpp", "transitions.cpp"])
 def test_without_middleware(source: str, tmp_path: Path) -> None:
     if shutil.which("g++") is None:
         pytest.skip("no g++")

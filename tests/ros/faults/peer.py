@@ -5,7 +5,9 @@ python3 peer.py 1|2 NAME
 Reads commands from standard input, one JSON object a line, such as `{"do": "silence", "topic": "/scan"}`. The values of
 `do` are the public methods of `Peer`. Each command gets a line `{"did": ..., "result": ...}`. Each other event is a
 line, too: `{"heard": topic, "at": seconds, "data": ...}`, `{"called": number}`, `{"goal": number}`,
-`{"cancel": number}`, `{"sent": topic, "count": ...}`. The program ends at the end of its input.
+`{"cancel": number}`, `{"sent": topic, "count": ...}`. Servers of the node under test cause `{"answered": number}`,
+`{"accepted": number, "yes": ...}`, `{"feedback": number}`, `{"ended": number, "how": ...}` and
+`{"cancel_answered": number, "yes": ...}`. The program ends at the end of its input.
 """
 
 import importlib
@@ -34,6 +36,7 @@ class Peer:
         self.repeating = {}
         self.calls = []
         self.goals = []
+        self.sent = []
         self.at_once = {}
         self.simulated = None
 
@@ -175,6 +178,33 @@ class Peer:
         With `open`, the result has a status that is no end, and the goal goes on.
         """
         self.goals[number].end(how, fields or {})
+
+    def call(self, name, kind, fields):
+        """Call a service of the node; return the number of the call. A failed call has null as its data."""
+        number = len(self.sent)
+        self.sent.append(None)
+        self.ros.call(name, kind, fields, lambda response: self.say(answered=number, data=plain(response)))
+        return number
+
+    def start(self, name, kind, fields):
+        """Send a goal to an action of the node; return its number."""
+        number = len(self.sent)
+        self.sent.append(
+            self.ros.start(
+                name,
+                kind,
+                fields,
+                accepted=lambda yes: self.say(accepted=number, yes=yes),
+                progress=lambda feedback: self.say(feedback=number, data=plain(feedback)),
+                ended=lambda how, result: self.say(ended=number, how=how, data=plain(result)),
+                cancelled=lambda yes: self.say(cancel_answered=number, yes=yes),
+            )
+        )
+        return number
+
+    def cancel(self, number):
+        """Ask the node to cancel a goal that it has accepted. Only ROS 2 answers that."""
+        self.sent[number].cancel()
 
     def cancel_elsewhere(self, number):
         """Cancel an accepted goal from another client; the goal goes on until `end`."""

@@ -15,9 +15,13 @@ def _find(kind, folder):
     return getattr(importlib.import_module(f"{package}.{folder}"), name)
 
 
+ENDS = {GoalStatus.SUCCEEDED: "succeeded", GoalStatus.ABORTED: "aborted", GoalStatus.PREEMPTED: "cancelled"}
+
+
 class Ros:
     def __init__(self, name):
         rospy.init_node(name, disable_signals=True)
+        self.clients = {}
 
     def stop(self):
         rospy.signal_shutdown("the test has ended")
@@ -65,6 +69,42 @@ class Ros:
             auto_start=False,
         )
         server.start()
+
+    def call(self, name, kind, fields, answered):
+        service = _find(kind, "srv")
+
+        def call():
+            rospy.wait_for_service(name)
+            try:
+                answered(rospy.ServiceProxy(name, service)(fill(service._request_class(), fields)))
+            except rospy.ServiceException:
+                answered(None)
+
+        threading.Thread(target=call, daemon=True).start()
+
+    def start(self, name, kind, fields, accepted, progress, ended, cancelled):  # noqa: ARG002
+        if name not in self.clients:
+            self.clients[name] = actionlib.ActionClient(name, _find(kind + "Action", "msg"))
+            self.clients[name].wait_for_server()
+        said = []
+
+        def accept(yes):
+            if not said:
+                said.append(yes)
+                accepted(yes)
+
+        def follow(handle):
+            state = handle.get_comm_state()
+            if state == actionlib.CommState.ACTIVE:
+                accept(True)
+            elif state == actionlib.CommState.DONE:
+                how = handle.get_terminal_state()
+                accept(how != GoalStatus.REJECTED)
+                if how != GoalStatus.REJECTED:
+                    ended(ENDS[how], handle.get_result())
+
+        goal = fill(_find(kind + "Goal", "msg")(), fields)
+        return self.clients[name].send_goal(goal, follow, lambda _, feedback: progress(feedback))
 
 
 class _Goal:

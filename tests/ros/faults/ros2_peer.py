@@ -8,7 +8,7 @@ from queue import Queue
 import rclpy
 from action_msgs.msg import GoalInfo, GoalStatus
 from action_msgs.srv import CancelGoal
-from rclpy.action import ActionServer, CancelResponse, GoalResponse
+from rclpy.action import ActionClient, ActionServer, CancelResponse, GoalResponse
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
@@ -21,11 +21,19 @@ def _find(kind, folder):
     return getattr(importlib.import_module(f"{package}.{folder}"), name)
 
 
+ENDS = {
+    GoalStatus.STATUS_SUCCEEDED: "succeeded",
+    GoalStatus.STATUS_ABORTED: "aborted",
+    GoalStatus.STATUS_CANCELED: "cancelled",
+}
+
+
 class Ros:
     def __init__(self, name):
         rclpy.init()
         self.node = rclpy.create_node(name)
         self.group = ReentrantCallbackGroup()
+        self.clients = {}
         # Only calls and goals wait for decisions of the test. Several threads cost several times as much CPU time.
         self.executor = MultiThreadedExecutor(num_threads=8) if name == "server" else SingleThreadedExecutor()
         self.executor.add_node(self.node)
@@ -125,6 +133,49 @@ class Ros:
             callback_group=self.group,
         )
         self.executor.wake()
+
+    def call(self, name, kind, fields, answered):
+        service = _find(kind, "srv")
+        if name not in self.clients:
+            self.clients[name] = self.node.create_client(service, name)
+            self.clients[name].wait_for_service()
+        answer = self.clients[name].call_async(fill(service.Request(), fields))
+        answer.add_done_callback(lambda future: answered(future.result()))
+        self.executor.wake()
+
+    def start(self, name, kind, fields, accepted, progress, ended, cancelled):
+        action = _find(kind, "action")
+        if name not in self.clients:
+            self.clients[name] = ActionClient(self.node, action, name)
+            self.clients[name].wait_for_server()
+        sent = _Sent(cancelled)
+
+        def decided(future):
+            sent.handle = future.result()
+            accepted(sent.handle.accepted)
+            if sent.handle.accepted:
+                sent.handle.get_result_async().add_done_callback(finished)
+
+        def finished(future):
+            ended(ENDS[future.result().status], future.result().result)
+
+        answer = self.clients[name].send_goal_async(
+            fill(action.Goal(), fields), feedback_callback=lambda message: progress(message.feedback)
+        )
+        answer.add_done_callback(decided)
+        self.executor.wake()
+        return sent
+
+
+class _Sent:
+    """A goal that a client sent to the node under test."""
+
+    def __init__(self, cancelled):
+        self.cancelled = cancelled
+
+    def cancel(self):
+        answer = self.handle.cancel_goal_async()
+        answer.add_done_callback(lambda future: self.cancelled(bool(future.result().goals_canceling)))
 
 
 class _Server(ActionServer):

@@ -52,6 +52,8 @@ class Ros1:
     ) -> Ros1Values:
         """Return the template values of a controller; see `Middleware`."""
         libraries = {"rosconsole", "roscpp", "xmlrpcpp", *(["actionlib"] if node.actions else [])}
+        if any(server.is_action for server in node.servers):
+            libraries |= {"actionlib", "actionlib_msgs"}
         built = sorted({*libraries, *used.types})
         tested = ["rosgraph_msgs", "rospy", "rostest"] if tests else []
         return Ros1Values(
@@ -72,7 +74,7 @@ def _names(node: GeneratedNode) -> Iterator[tuple[str, str, str, list[str]]]:
     topics |= {topic.topic: topic.word for topic in node.publishers}
     for topic, word in topics.items():
         yield "topic", word, topic, [""]
-    for service in node.services:
-        yield "service", service.word, service.name, [""]
-    for action in node.actions:
-        yield "action", action.word, action.name, [f"/{part}" for part in _ACTION]
+    for end in (*node.services, *(server for server in node.servers if not server.is_action)):
+        yield "service", end.word, end.name, [""]
+    for end in (*node.actions, *(server for server in node.servers if server.is_action)):
+        yield "action", end.word, end.name, [f"/{part}" for part in _ACTION]

@@ -95,7 +95,7 @@ class Ros2:
         """Return the template values of a controller; see `Middleware`."""
         types = set(used.types)
         libraries, started = ["rclcpp"], ["launch", "launch_ros"]
-        if node.actions:
+        if node.actions or any(server.is_action for server in node.servers):
             libraries.append("rclcpp_action")
             types.add("action_msgs")
         if node.hands_on:

@@ -20,6 +20,8 @@ from robosc.run.runtime.core.composer import Composer
 from robosc.run.runtime.core.event_handler import EventHandler
 from robosc.run.runtime.core.monitors import OTHER_TYPE, GraphMonitor, Watchdog
 from robosc.run.runtime.core.node_data import UNSENDABLE, NotFiniteError, why_unsendable
+from robosc.run.runtime.core.port import GoalOutcome
+from robosc.run.runtime.core.servers import ActionServer, GoalEvents, ServiceServer
 from robosc.run.runtime.core.settings import SafeMessages
 from robosc.run.runtime.core.times import RESOLUTION_MS
 
@@ -30,7 +32,7 @@ if TYPE_CHECKING:
     from robosc.model.semantics.component_parts import Parts
     from robosc.run.runtime.core.event_loop import EventLoop, Timer
     from robosc.run.runtime.core.json_text import Json
-    from robosc.run.runtime.core.port import Client, ControllerPort, Failure, Message
+    from robosc.run.runtime.core.port import Client, ControllerPort, Failure, Message, Server
     from robosc.run.runtime.core.settings import Settings
 
 
@@ -43,7 +45,7 @@ class _Sender:
     """Sender of the data of one trigger. `message` and `logged` hold the data prepared last."""
 
     sending: rosgraph.Sending
-    owner: rosgraph.Publisher | Client
+    owner: rosgraph.Publisher | Client | Server
     interface: rosgraph.Interface
     section: Section
     frame: str
@@ -93,7 +95,9 @@ class Controller(EventHandler):
         self._withheld: set[str] = set()
         #: Enabled commands whose data the supervisor forbids.
         self._forbidden: set[str] = set()
-        self._monitor = GraphMonitor(port, event_loop, [*graph.serviceClients, *graph.actionClients])
+        clients: list[Client] = [*graph.serviceClients, *graph.actionClients]
+        servers: list[Server] = [*graph.serviceServers, *graph.actionServers]
+        self._monitor = GraphMonitor(port, event_loop, clients, servers)
         awaited = {topic.removeprefix("/") for topic in settings.configuration.wait_for}
         #: Topics that commands wait for and that have not been received yet.
         self._unheard = [topic for topic in graph.subscriptions if topic.topic.removeprefix("/") in awaited]
@@ -120,6 +124,39 @@ class Controller(EventHandler):
             starter = ActionClient(port, event_loop, action, times, answers)
             self._add_sender(action, action.identifier, action.request, Section.GOAL, starter.start)
             self._starters[action] = self.goals[action.cancel] = starter
+        #: What the controller serves.
+        self.services = {served: self._service_server(served) for served in graph.serviceServers}
+        self.actions = {served: self._action_server(served) for served in graph.actionServers}
+
+    def _service_server(self, service: rosgraph.ServiceServer) -> ServiceServer:
+        server = ServiceServer(self._event_loop, partial(self.take, service), self._warner(service))
+        self._add_answer(service, service.response, Section.RESPONSE, server.respond)
+        return server
+
+    def _action_server(self, action: rosgraph.ActionServer) -> ActionServer:
+        events = GoalEvents(
+            permits=partial(self.permits, action),
+            take=partial(self.take, action),
+            may_cancel=lambda: action.cancel is not None and self._control.enabled(event_name(action.cancel)),
+            cancel=partial(self.cancel_served, action),
+            default=lambda: self._port.create(action.interface, Section.RESULT),
+        )
+        server = ActionServer(self._event_loop, events, self._warner(action))
+        self._add_answer(action, action.feedback, Section.FEEDBACK, server.feed_back)
+        ends = (action.response, action.error, action.canceled)
+        outcomes = (GoalOutcome.SUCCEEDED, GoalOutcome.ABORTED, GoalOutcome.CANCELED)
+        for sending, outcome in zip(ends, outcomes, strict=True):
+            self._add_answer(action, sending, Section.RESULT, partial(server.end, outcome))
+        return server
+
+    def _warner(self, server: Server) -> Callable[[str], None]:
+        return lambda text: self._port.warn(f"{server.identifier}: {text}")
+
+    def _add_answer(
+        self, server: Server, sending: rosgraph.Sending | None, section: Section, send: Callable[[Message], None]
+    ) -> None:
+        if sending is not None:
+            self._add_sender(server, server.identifier, sending, section, send)
 
     def _ends(self, client: Client) -> tuple[Callable[[Message], None], Callable[[Failure, str, Message], None]]:
         """Return the handlers of a response and of a failure of a service or action."""
@@ -128,7 +165,7 @@ class Controller(EventHandler):
 
     def _add_sender(
         self,
-        owner: rosgraph.Publisher | Client,
+        owner: rosgraph.Publisher | Client | Server,
         name: str,
         sending: rosgraph.Sending,
         section: Section,
@@ -186,6 +223,14 @@ class Controller(EventHandler):
         if not self._stopping:
             self._stopping = True
             self._halt()
+            for service in self.services.values():
+                service.leave()
+            for action in self.actions.values():
+                action.leave()
+
+    @property
+    def busy(self) -> bool:
+        return super().busy or any(server.waits for server in self.actions.values())
 
     def _watch(self, topic: str, seconds: float) -> Watchdog:
         def silent() -> None:
@@ -224,6 +269,35 @@ class Controller(EventHandler):
             yield
             self._control.end()
         self._stop_if_violated()
+
+    def permits(self, action: rosgraph.ActionServer, goal: Message) -> bool:
+        """Return whether a goal of a client can be accepted now: its event would happen. Report data of no use."""
+        reception, engine = action.request, self._control.engine
+        event = event_name(reception.event)
+        if self._halted or self._unheard:
+            return False
+        if not engine.enabled(event):
+            with self._batch():
+                self._receive(reception, action.identifier, goal)  # it may violate an assumption
+            return False
+        try:
+            engine.set_inputs(event, self._data.receive(reception.event, reception.inputs, goal).inputs)
+        except UnreadableError as fault:
+            self._warn(reception.event, f"{action.identifier}: {fault}")
+            return False
+        return engine.permits_inputs(event)
+
+    def take(self, server: Server, request: Message) -> bool:
+        """Handle a request or an accepted goal of a client as a batch; return whether its event has happened."""
+        with self._batch():
+            is_possible = self._control.enabled(event_name(server.request.event))
+            return self._receive(server.request, server.identifier, request) and is_possible
+
+    def cancel_served(self, action: rosgraph.ActionServer) -> None:
+        """Handle an accepted request of a client to cancel its goal."""
+        assert action.cancel is not None
+        with self._batch():
+            self._perform(action.cancel)
 
     def _note_received(self, subscription: rosgraph.Subscription) -> None:
         if subscription in self._unheard:
@@ -340,7 +414,7 @@ class Controller(EventHandler):
             return False
         return True
 
-    def _forget_handed(self, owner: rosgraph.Publisher | Client) -> None:
+    def _forget_handed(self, owner: rosgraph.Publisher | Client | Server) -> None:
         """Send each message of a topic again that is sent on change: another one has gone out there."""
         for sender in self._on_change:
             if sender.owner is owner:

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from robosc.run.runtime.core.event_loop import EventLoop
-    from robosc.run.runtime.core.port import Client, ControllerPort, Endpoint
+    from robosc.run.runtime.core.port import Client, ControllerPort, Endpoint, Server
 
 #: Seconds between two looks at the graph, and looks after which a topic should have a publisher.
 _PERIOD = 1.0
@@ -61,24 +61,28 @@ class GraphMonitor:
 
     Each fault is logged once, and `faults` has it as long as it lasts: another type, a quality of service that does not
     fit, no publisher for five seconds, another publisher on a topic that the controller commands, a server of another
-    type if there is none of the right one, and several servers of the right type.
+    type if there is none of the right one, several servers of the right type, and another server of what the controller
+    serves.
     """
 
-    def __init__(self, port: ControllerPort, loop: EventLoop, clients: Sequence[Client] = ()) -> None:
+    def __init__(
+        self, port: ControllerPort, loop: EventLoop, clients: Sequence[Client] = (), servers: Sequence[Server] = ()
+    ) -> None:
         self._port = port
         self._loop = loop
         self._clients = clients
+        self._servers = servers
         self._missing: dict[str, int] = {}
         self._twice: Counter[Client] = Counter()
         self._other_types: set[Client] = set()
         self._reported: set[str] = set()
-        self._faults: dict[rosgraph.Subscription | rosgraph.Publisher | Client, list[str]] = {}
+        self._faults: dict[rosgraph.Subscription | rosgraph.Publisher | Client | Server, list[str]] = {}
 
     def start(self) -> None:
         """Begin to check."""
         self._loop.call_later(_PERIOD, self._look)
 
-    def faults(self, element: rosgraph.Subscription | rosgraph.Publisher | Client) -> Sequence[str]:
+    def faults(self, element: rosgraph.Subscription | rosgraph.Publisher | Client | Server) -> Sequence[str]:
         """Return the faults of a topic, service or action at the last check."""
         return self._faults.get(element, ())
 
@@ -96,6 +100,9 @@ class GraphMonitor:
                 self._check_publisher(element, endpoints)
         for client in self._clients:
             self._check_servers(client)
+        for server in self._servers:
+            for node, _ in self._port.serving_nodes(server):
+                self._note(server, f"{server.identifier}: {node} serves it, too")
         self.start()
 
     def _check_subscription(self, subscription: rosgraph.Subscription, endpoints: list[Endpoint]) -> None:
@@ -147,7 +154,7 @@ class GraphMonitor:
 
     def _note(
         self,
-        element: rosgraph.Subscription | rosgraph.Publisher | Client,
+        element: rosgraph.Subscription | rosgraph.Publisher | Client | Server,
         fault: str,
         text: str | None = None,
         report: Callable[[str], None] | None = None,

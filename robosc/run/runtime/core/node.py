@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from robosc.run.runtime.core.event_loop import EventLoop
     from robosc.run.runtime.core.port import Client, ComponentStatus, Message
     from robosc.run.runtime.core.proxies import ActionProxy
+    from robosc.run.runtime.core.servers import ActionServer
     from robosc.run.runtime.core.settings import Settings
 
 #: Seconds between two checks for an interrupt at most, and seconds for the last messages to arrive.
@@ -126,6 +127,10 @@ class RunningNode(ControllerPort, ABC):
             self._clients[service] = self._service_client(service)
         for action in self._graph.actionClients:
             self._clients[action] = self._action_client(action)
+        for served in self._graph.serviceServers:
+            self.serve(self._types[served.interface], served.identifier, controller.services[served].call)
+        for performed in self._graph.actionServers:
+            self._serve_action(performed, controller.actions[performed])
         for subscription in self._graph.subscriptions:
             self._subscribe(subscription, partial(controller.receive, subscription))
 
@@ -244,6 +249,10 @@ class RunningNode(ControllerPort, ABC):
 
         `called` is called in the event loop's thread, with the request and its `Answer`.
         """
+
+    @abstractmethod
+    def _serve_action(self, action: rosgraph.ActionServer, server: ActionServer) -> None:
+        """Offer an action of the controller."""
 
     @abstractmethod
     def _proxy(self, action: rosgraph.ActionClient, layer: Layer, timeout: float) -> ActionProxy[Any]:

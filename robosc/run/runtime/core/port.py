@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 Message: TypeAlias = Any
 #: Server that the node calls: its client in the ROS graph.
 Client: TypeAlias = "rosgraph.ServiceClient | rosgraph.ActionClient"
+#: Server of the node.
+Server: TypeAlias = "rosgraph.ServiceServer | rosgraph.ActionServer"
 
 
 class GoalOutcome(StrEnum):
@@ -88,6 +90,27 @@ class Goal(Protocol):
 
     def is_gone(self) -> bool:
         """Return whether the server that has the goal is gone; called repeatedly."""
+
+
+class Answer(Protocol):
+    """Answer that a caller of a service waits for."""
+
+    def give(self, response: Message = None) -> None:
+        """Answer, once; without a response, with an unset one: services of ROS 2 have no errors."""
+
+
+class ServedGoal(Protocol):
+    """Goal of a client that the node has accepted."""
+
+    @property
+    def is_answered(self) -> bool:
+        """Whether the middleware has sent the result to the clients that wait for it."""
+
+    def feed_back(self, feedback: Message) -> None:
+        """Publish feedback."""
+
+    def end(self, outcome: GoalOutcome, result: Message) -> None:
+        """End the goal as succeeded, canceled or aborted, once."""
 
 
 @dataclass(frozen=True)
@@ -164,10 +187,10 @@ class ControllerPort(Port, Protocol):
     def send_goal(self, client: rosgraph.ActionClient, goal: Message, handlers: GoalHandlers) -> Goal:
         """Send a goal; the handlers are not called before this returns."""
 
-    def serving_nodes(self, client: Client) -> Sequence[tuple[str, str]]:
+    def serving_nodes(self, element: Client | Server) -> Sequence[tuple[str, str]]:
         """Return the nodes that serve the name of a service or action, each with its type.
 
-        A single server of the right type may be left out.
+        A single server of the right type may be left out. This node is left out if it serves the element.
         """
 
     def endpoints(self) -> Mapping[rosgraph.Subscription | rosgraph.Publisher, list[Endpoint]]:

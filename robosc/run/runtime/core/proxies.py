@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from robosc.run.runtime.core.cancel_requests import CANCELING, CancelRequests, GoalTimes
 from robosc.run.runtime.core.clients import LOST, LOST_GOAL, LOST_RESULT, POLL, UNKNOWN_GOAL, Answers, ServiceClient
@@ -14,14 +14,7 @@ if TYPE_CHECKING:
     from robosc.model import rosgraph
     from robosc.run.runtime.core.event_loop import EventLoop
     from robosc.run.runtime.core.layer import Layer
-    from robosc.run.runtime.core.port import Message, Port
-
-
-class Answer(Protocol):
-    """Answer that a caller of the layer waits for."""
-
-    def give(self, response: Message = None) -> None:
-        """Answer, once; without a response, with an unset one: services of ROS 2 have no errors."""
+    from robosc.run.runtime.core.port import Answer, Message, Port
 
 
 class ServiceProxy:

@@ -64,8 +64,10 @@ if TYPE_CHECKING:
     from robosc.language.configuration.quality import Quality
     from robosc.run.runtime.core.event_handler import EventHandler
     from robosc.run.runtime.core.layer import Layer
-    from robosc.run.runtime.core.port import Client, Goal, Message
+    from robosc.run.runtime.core.port import Client, Goal, Message, Server
     from robosc.run.runtime.core.proxies import ActionProxy
+    from robosc.run.runtime.core.servers import ActionServer
+    from robosc.run.runtime.ros2.servers import Ros2ActionServer
 
 _PROFILES = {
     Profile.QUEUE: QoSProfile(depth=QUEUE_DEPTH),
@@ -107,6 +109,7 @@ class Ros2Node(RunningNode):
         self.simulated = bool(self.node.get_parameter("use_sim_time").value)
         self.event_loop = EventLoop(self.now if self.simulated else time.monotonic, starts_late=self.simulated)
         self._pending: dict[rosgraph.ServiceClient, Any] = {}
+        self._served: list[Ros2ActionServer] = []
         self._qualities: dict[rosgraph.Subscription | rosgraph.Publisher, Any] = {}
         self._durabilities = _Durabilities(self.node)
         #: Number of messages on each topic that `_take` handled.
@@ -138,6 +141,8 @@ class Ros2Node(RunningNode):
 
     def close(self) -> None:
         self._executor.shutdown()
+        for served in self._served:
+            served.close()  # otherwise the ROS graph lists it for another 20 s
         self.node.destroy_node()
         rclpy.try_shutdown()
 
@@ -210,7 +215,7 @@ class Ros2Node(RunningNode):
     def _reception(self, element: rosgraph.Subscription | rosgraph.Publisher) -> Quality:
         return quality.reception(element.interface, element.topic, self._configuration)
 
-    def feedback_qos(self, action: rosgraph.ActionClient) -> Any:
+    def feedback_qos(self, action: rosgraph.ActionClient | rosgraph.ActionServer) -> Any:
         """Return the quality of service of an action's feedback."""
         return _qos(quality.feedback(action.identifier, self._configuration))
 
@@ -269,10 +274,11 @@ class Ros2Node(RunningNode):
     def type_name(self, interface: rosgraph.Interface) -> str:
         return f"{interface.package}/{FOLDERS[interface.kind.name]}/{interface.type}"
 
-    def serving_nodes(self, client: Client) -> list[tuple[str, str]]:
-        part = ("/_action/send_goal", "_SendGoal") if isinstance(client, rosgraph.ActionClient) else ("", "")
-        name = self.node.resolve_service_name(client.identifier + part[0])
-        own = self.type_name(client.interface) + part[1]
+    def serving_nodes(self, element: Client | Server) -> list[tuple[str, str]]:
+        is_action = element.interface.kind == rosgraph.InterfaceKind.action
+        part = ("/_action/send_goal", "_SendGoal") if is_action else ("", "")
+        name = self.node.resolve_service_name(element.identifier + part[0])
+        own = self.type_name(element.interface) + part[1]
         # The types of clients are among these; the exact list of servers takes longer.
         types = dict(self.node.get_service_names_and_types()).get(name, ())
         if set(types) <= {own} and self.node.count_services(name) <= 1:
@@ -284,6 +290,8 @@ class Ros2Node(RunningNode):
             except NodeNameNonExistentError:
                 continue  # it has just gone
             full_name = f"{space.rstrip('/')}/{node}"
+            if full_name == self.full_name and isinstance(element, rosgraph.ServiceServer | rosgraph.ActionServer):
+                continue
             nodes += [(full_name, kind.removesuffix(part[1])) for kind in served.get(name, ())]
         return nodes
 
@@ -368,7 +376,8 @@ class Ros2Node(RunningNode):
             called(request, under_way[-1])
             return response
 
-        service = self.node.create_service(kind, name, serve)
+        qos = _qos(quality.service_calls(name, self._configuration))
+        service = self.node.create_service(kind, name, serve, qos_profile=qos)
         send = service.send_response
         service.send_response = lambda _, caller: under_way.pop().send_with(lambda response: send(response, caller))
 
@@ -383,6 +392,11 @@ class Ros2Node(RunningNode):
         """Return the servers of an action in the ROS graph; a restarted server has another identity."""
         publishers = self.node.get_publishers_info_by_topic(f"{action}/_action/status")
         return frozenset(bytes(publisher.endpoint_gid) for publisher in publishers)
+
+    def _serve_action(self, action: rosgraph.ActionServer, server: ActionServer) -> None:
+        from robosc.run.runtime.ros2.servers import Ros2ActionServer  # noqa: PLC0415  # few models serve actions
+
+        self._served.append(Ros2ActionServer(self, self._types[action.interface], action, server))
 
     def _proxy(self, action: rosgraph.ActionClient, layer: Layer, timeout: float) -> ActionProxy[Any]:
         return Ros2ActionProxy(self, self._types[action.interface].Impl, action, layer, timeout)

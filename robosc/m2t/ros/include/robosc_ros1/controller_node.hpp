@@ -53,10 +53,16 @@ class ControllerNode {
 
   // Functions of the node.
 
+  /// Watches for other publishers on a topic of which the node should be the only one.
+  template <typename Message>
+  void command_alone(const std::string& topic) {
+    monitor_.commands<Message>(topic);
+  }
+
   /// A publisher of commands. The node should be the only publisher on its topic.
   template <typename Message>
   ros::Publisher advertise(const std::string& topic) {
-    monitor_.commands<Message>(topic);
+    command_alone<Message>(topic);
     return node_.advertise<Message>(topic, kQueueDepth);
   }
 
