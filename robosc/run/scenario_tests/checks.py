@@ -113,11 +113,12 @@ def _about_event(line: Line, event: sct.Event, *, is_repeated: bool) -> Iterator
         hint = f"write `response to {name(plant_of(event))} sent`" if event.kind == sct.EventKind.request else None
         yield line.fault(f"the {words(event)} comes from the robot, not from the controller", hint)
     elif isinstance(line, Acceptance) and plant_of(event).kind != sct.PlantKind.actionServer:
-        yield line.fault(f"the {words(event)} is no goal for the controller", "only an `outgoing action` has such goals")
+        hint = "only an `outgoing action` accepts and rejects goals"
+        yield line.fault(f"`{name(plant_of(event))}` takes no goals", hint)
     elif isinstance(line, Stop) and not is_repeated:
         yield line.fault(f"no `every` before this line repeats the {words(event)}", "leave it out")
     elif isinstance(line, Every) and event.kind in _ONCE and plant_of(event).kind != sct.PlantKind.message:
-        hint = "write this line without `every`: it ends its call or goal"
+        hint = "write this line without `every`: it comes once for each call or goal"
         yield line.fault(f"the {words(event)} cannot be repeated", hint)
 
 

@@ -211,7 +211,8 @@ class Player(Drive):
                 if isinstance(line, Expectation):
                     fault = self._expectation(line)
                     if fault is not None:
-                        self._add(self._with_rejected(self._with_canceling(fault)))
+                        fault = self._with_canceling(fault)
+                        self._add(fault if isinstance(line, Acceptance) else self._with_rejected(fault))
                 else:
                     self._since = len(self._lines.lines)
                     self._violations_before = len(self._controller.violations)
