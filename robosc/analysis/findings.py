@@ -23,6 +23,7 @@ from robosc.base.diagnostics import Diagnostic, Severity, in_order
 from robosc.model import sct
 from robosc.model.places import place
 from robosc.model.reflection import tree
+from robosc.model.semantics.communication import ANSWERS, ENDING_ANSWERS
 from robosc.model.semantics.edges import edges_from, edges_of
 from robosc.model.semantics.roles import plant_of
 from robosc.synthesis.encoding import referenced_elements
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
         ForbiddenCancel,
         Hindrance,
         NeverEnabled,
+        NeverEnding,
         Observations,
         ProvideGap,
         SelfCancelling,
@@ -79,6 +81,8 @@ def findings_of(model: sct.SupervisoryControlModel, observations: Observations) 
                 for plant in observations.unused_assumptions
                 if not _of_library(plant, model)
             ),
+            *map(words_for.rejected_goal, observations.rejected_goals),
+            *map(words_for.never_ending, observations.never_ending),
             *map(words_for.given_supervisor, observations.flaws),
         ]
     )
@@ -143,7 +147,7 @@ class _Findings:
     def never_enabled(self, observed: NeverEnabled) -> Diagnostic:
         event, plant = observed.event, plant_of(observed.event)
         silent = event.kind == sct.EventKind.tau
-        subject = f"this transition of `{name(plant)}`" if silent else f"`{name(plant)}`"
+        subject = f"this transition of `{name(plant)}`" if silent else _subject(event)
         done = "taken" if silent else _DONE.get(plant.kind, "sent")
         if observed.forbidden is Forbidden.BY_REQUIREMENTS:
             why, hint = (
@@ -173,14 +177,16 @@ class _Findings:
             why, hint = _guard(event), "correct its guard or the transitions to its state"
         else:
             why = _not_requested(observed)
-            hint = f"write `on request to {reference(plant)}` in a state that can be reached"
+            word = words(event).partition(" ")[0] if event.kind in ANSWERS else "request"
+            hint = f"write `on {word} to {reference(plant)}` in a state that can be reached"
         required = () if observed.kept_away else observed.requirements
         at_fault = required or (observed.counterexample and observed.counterexample.violated) or ()
         return _finding(
             _blamed(at_fault, event),
             "never-enabled",
             f"{subject} can never be {done}: {why}",
-            f"{hint}, or remove it" + ("" if silent else f"; `robosc explain --why-never {name(plant)}` explains why"),
+            f"{hint}, or remove it"
+            + ("" if silent else f"; `robosc explain --why-never {_named(event)}` explains why"),
         )
 
     def silent_restricted(self, observed: SilentRestricted) -> Diagnostic:
@@ -259,15 +265,16 @@ class _Findings:
 
     def provide_gap(self, observed: ProvideGap) -> Diagnostic:
         plant = plant_of(observed.event)
+        provided = "feedback to " * (observed.event.kind == sct.EventKind.replyFeedback) + reference(plant)
         done = _DONE.get(plant.kind, "sent")
         edges = edges_of(observed.data)
         elements = [element for edge in edges for element in referenced_elements(edge.guard)]
         return _finding(
             observed.data,
             "provide-gap",
-            f"`{name(plant)}` can be {done} without data, where no condition of its `provide` statements holds"
-            + _where(observed.example, [*elements, *self._asking(observed.event)]),
-            f"add `provide {reference(plant)} with ...` without a condition, or a requirement that excludes this",
+            f"{_subject(observed.event)} can be {done} without data, where no condition of its `provide` statements"
+            " holds" + _where(observed.example, [*elements, *self._asking(observed.event)]),
+            f"add `provide {provided} with ...` without a condition, or a requirement that excludes this",
         )
 
     def shared_topic_conflict(self, observed: SharedTopicConflict) -> Diagnostic:
@@ -294,6 +301,37 @@ class _Findings:
             f"`{name(plant)}` is {_DONE[plant.kind]} again and again, as soon as it has ended: no requirement "
             "restricts it, and no component waits for its request",
             f"add `requirement {action} needs ...`, or `on request to {action}` in the states that allow it",
+        )
+
+    @staticmethod
+    def rejected_goal(event: sct.Event) -> Diagnostic:
+        plant = plant_of(event)
+        return _finding(
+            event,
+            "goal-rejected",
+            f"the controller rejects every goal of `{name(plant)}`: the supervised robot reaches no state in which each"
+            f" component that names `request from {reference(plant)}` permits it"
+            if _is_named(event)
+            else f"the controller rejects every goal of `{name(plant)}`: no transition names its request",
+            f"write `on request from {reference(plant)}` in a state that can be reached",
+        )
+
+    def never_ending(self, observed: NeverEnding) -> Diagnostic:
+        plant = observed.plant
+        ends = [event for event in plant.events if event.kind in ENDING_ANSWERS]
+        is_action = plant.kind == sct.PlantKind.actionServer
+        what, word = ("goal", "ends") if is_action else ("request", "is answered")
+        named = join_with_and([f"`{words(event).partition(' ')[0]} to {reference(plant)}`" for event in ends])
+        possible = f"{named} can{'not' if len(ends) == 1 else ' no longer'} happen"
+        why = f"no transition names `response to {reference(plant)}`{' or another end' * is_action}"
+        if ends:
+            why = f"after {in_words(observed.trace, self._model)}, {possible}"
+        written = [f"`on {end} to {reference(plant)}`" for end in ("response", *("error",) * is_action)]
+        return _finding(
+            plant,
+            "goal-never-ends",
+            f"a {what} of `{name(plant)}` possibly never {word}: {why}",
+            f"write {' or '.join(written)} in the states in which it is then open",
         )
 
     def unused_assumption(self, plant: sct.Plant) -> Diagnostic:
@@ -403,9 +441,31 @@ def _guard(event: sct.Event) -> str:
 
 def _not_requested(observed: NeverEnabled) -> str:
     waiting = [f"`{name(plant)}`" for plant in observed.plants]
+    if observed.event.kind in ANSWERS:
+        if not waiting:
+            return "the components that name it never permit it at the same time"
+        return f"{join_with_and(waiting)} cannot reach a state that permits it"
     if not waiting:
         return "the components that wait for its request never do so at the same time"
     return f"{join_with_and(waiting)} cannot reach a state that waits for its request"
+
+
+def _subject(event: sct.Event) -> str:
+    """Return a command as the subject of a sentence: its communication, or the answer to a client."""
+    return f"the {words(event)}" if event.kind in ANSWERS else f"`{name(plant_of(event))}`"
+
+
+def _named(event: sct.Event) -> str:
+    """Return the name of a command for `robosc explain`."""
+    plant = name(plant_of(event))
+    return f"{plant}.{words(event).partition(' ')[0]}" if event.kind in ANSWERS else plant
+
+
+def _is_named(event: sct.Event) -> bool:
+    """Return whether a component names an event."""
+    model = plant_of(event).eContainer()
+    components = (plant for plant in model.plants if plant.kind == sct.PlantKind.behaviour)
+    return any(edge.event is event for plant in components for edge in edges_of(plant))
 
 
 def _entered(event: sct.Event) -> Iterable[tuple[sct.Plant, sct.Location]]:

@@ -12,10 +12,12 @@ from robosc.analysis.blocking import BlockingCounterexample, blocking_counterexa
 from robosc.analysis.given_supervisor import flaws
 from robosc.analysis.paths import Layers, Path
 from robosc.model import sct
-from robosc.model.semantics.communication import RUNNING
+from robosc.model.semantics.communication import ANSWERS, RUNNING
 from robosc.model.semantics.roles import assumptions, plant_of, provide_numbers
 from robosc.synthesis.decoding import Value, value
 from robosc.synthesis.encoding import pick
+from robosc.synthesis.fixpoint import coreachable
+from robosc.synthesis.relation import steps
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -48,7 +50,7 @@ class Forbidden(Enum):
 
 @dataclass(frozen=True)
 class NeverEnabled:
-    """Trigger or tau event that is allowed in no controlled state.
+    """Trigger, answer or tau event that is allowed in no controlled state.
 
     `plants` each disable it in every controlled state. `requirements` disable it in all states in which the plants
     enable it, even if these are outside of the controlled states: see `requirements_at_fault`. `trace` is then a
@@ -68,6 +70,14 @@ class NeverEnabled:
     counterexample: BlockingCounterexample | None = None
     trace: tuple[TraceStep, ...] | None = None
     needed: sct.Event | None = None
+
+
+@dataclass(frozen=True)
+class NeverEnding:
+    """Service or action that the controller serves, with a request or goal that can never end after `trace`."""
+
+    plant: sct.Plant
+    trace: tuple[TraceStep, ...]
 
 
 @dataclass(frozen=True)
@@ -190,8 +200,9 @@ class Observations:
 
     `unrestricted_calls` are triggers of services and actions that can happen, have no requirement, and involve no other
     plant than their own. `unused_assumptions` are those that none of their events could violate, one for each text.
-    `counterexamples` explain events that synthesis restricts; large models may lack some of them. `flaws` are those of
-    a supervisor that the model already has.
+    `rejected_goals` are the requests of actions whose every goal is rejected. `counterexamples` explain events that
+    synthesis restricts; large models may lack some of them. `flaws` are those of a supervisor that the model already
+    has.
     """
 
     never_enabled: tuple[NeverEnabled, ...]
@@ -204,6 +215,8 @@ class Observations:
     unrestricted_calls: tuple[sct.Event, ...]
     unreachable_states: tuple[UnreachableState, ...]
     unused_assumptions: tuple[sct.Plant, ...]
+    rejected_goals: tuple[sct.Event, ...]
+    never_ending: tuple[NeverEnding, ...]
     counterexamples: Mapping[sct.Event, BlockingCounterexample]
     flaws: tuple[Flaw, ...] = ()
 
@@ -230,6 +243,8 @@ class Observer:
             tuple(self._unrestricted_calls()),
             tuple(self._unreachable_states()),
             tuple(self._unused_assumptions()),
+            tuple(self._rejected_goals),
+            tuple(self._never_ending()),
             dict(self._affordable_counterexamples()),
             flaws(self._system, self._system.solution.reached) if self._system.model.supervised else (),
         )
@@ -261,7 +276,9 @@ class Observer:
     def _never_enabled(self) -> Iterator[NeverEnabled]:
         controlled = self._system.controlled
         for event, permission in self._permissions.items():
-            if event.kind not in (sct.EventKind.trigger, sct.EventKind.tau) or permission.guard.everEnabled:
+            if event.kind not in (sct.EventKind.trigger, sct.EventKind.tau, *ANSWERS) or permission.guard.everEnabled:
+                continue
+            if any(plant_of(event) is plant_of(rejected) for rejected in self._rejected_goals):
                 continue
             relation = permission.relation
             in_sight = controlled & relation.enabled
@@ -386,10 +403,31 @@ class Observer:
         running = [location for location in plant.locations if location.name in RUNNING]
         return encoding.diagrams.any_of(map(encoding.location, running))
 
+    @cached_property
+    def _rejected_goals(self) -> list[sct.Event]:
+        """Requests of actions that the controller serves and that can happen in no controlled state."""
+        requests = (event for event in self._system.relations if event.kind == sct.EventKind.request)
+        return [
+            event
+            for event in requests
+            if not (self._system.controlled & self._system.relations[event].enabled).satisfiable()
+        ]
+
+    def _never_ending(self) -> Iterator[NeverEnding]:
+        """Yield the served communications with a controlled state from which they never become idle again."""
+        system = self._system
+        for plant in system.model.plants:
+            if plant.kind in (sct.PlantKind.serviceServer, sct.PlantKind.actionServer):
+                idle = system.controlled & system.encoding.location(plant.locations[0])
+                ending = coreachable(system.diagrams, steps(system.supervised_moves), idle, system.controlled)
+                endless = system.controlled & ~ending
+                if endless.satisfiable():
+                    yield NeverEnding(plant, system.trace(system.path_to(endless)))
+
     def _provide_gaps(self) -> Iterator[ProvideGap]:
         for event in self._triggers:
             plant = self._system.roles.data_plants.get(event)
-            if plant is None:
+            if plant is None or event.kind in (sct.EventKind.replyError, sct.EventKind.replyCanceled):
                 continue
             gap = self._permissions[event].allowed
             for chosen, number in provide_numbers(plant).items():

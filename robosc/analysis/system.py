@@ -369,7 +369,7 @@ class GuardedSystem(SupervisedSystem):
     def happens(self, event: sct.Event) -> Diagram:
         """Return the states, and inputs of a command, in which an event can happen, reachable or not."""
         relation = self.relations[event]
-        return (relation.happens if relation.has_data else relation.enabled) & self.guard(event)
+        return (relation.happens if relation.is_decided_by_data else relation.enabled) & self.guard(event)
 
     @cached_property
     def completion(self) -> Completion:

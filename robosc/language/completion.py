@@ -20,7 +20,15 @@ from robosc.language.surroundings import Surroundings
 from robosc.language.tokens import Kind, Tokens, too_complex
 from robosc.model import robosc as rsc
 from robosc.model.reflection import literals
-from robosc.model.semantics.communication import LASTING, RUNNING_WORD, event_names, sent_type
+from robosc.model.semantics.communication import (
+    LASTING,
+    RUNNING_WORD,
+    data_type,
+    event_names,
+    feedback_event,
+    sending_event,
+    sent_type,
+)
 from robosc.model.semantics.failures import FAILURE, FAILURES, reasons
 from robosc.model.semantics.naming import ROBOSC_QUANTIFIERS, TEXT_FUNCTION, escape_keyword
 from robosc.model.semantics.operators import FUNCTIONS
@@ -328,11 +336,12 @@ def _fits(reference: rsc.CommunicationReference, communication: Any) -> bool:
         case rsc.ResultTransition() | rsc.NamedEvent():
             return str(user.resultType) in event_names(communication)
         case rsc.ProvideStatement():
-            return sent_type(communication) is not None
+            row = feedback_event(communication) if user.feedback else sending_event(communication)
+            return data_type(communication, row) is not None
         case rsc.LimitStatement():
             return isinstance(communication, rsc.Message) and sent_type(communication) is not None
         case rsc.CommunicationRequirement():
-            return "request" in event_names(communication)
+            return sending_event(communication) is not None
         case rsc.TimedTransition():
             return isinstance(communication, rsc.Message) and event_names(communication) == ["response"]
     return True

@@ -11,7 +11,8 @@ from robosc.language.document_symbols import span
 from robosc.language.interface_types import is_made
 from robosc.model import expression as ex
 from robosc.model import robosc as rsc
-from robosc.model.semantics.communication import carrying_events, events, section_of
+from robosc.model import sct
+from robosc.model.semantics.communication import SERVED, carrying_events, event_of, events, ros_kind, section_of
 from robosc.model.semantics.expansion import constant_value
 from robosc.model.semantics.instances import fleet_numbers, instance_text
 from robosc.model.semantics.naming import enumeration
@@ -76,7 +77,7 @@ def event_text(transition: rsc.Transition, file: File) -> str:
         case rsc.ResultTransition():
             reference = transition.communicationType
             named = _source(file, reference) if reference is not None else "…"
-            return f"{transition.resultType} {direction(transition.resultType)} {named}"
+            return f"{transition.resultType} {direction(transition)} {named}"
         case rsc.TimedTransition():
             without = ", ".join(_source(file, reference) for reference in transition.without)
             time = f"after {_source(file, transition.duration)} {transition.unit}"
@@ -84,9 +85,11 @@ def event_text(transition: rsc.Transition, file: File) -> str:
     return "by itself"
 
 
-def direction(event: rsc.ResultType) -> str:
+def direction(transition: rsc.ResultTransition) -> str:
     """Return the preposition between an event's name and its communication."""
-    return "to" if event in {rsc.ResultType.request, rsc.ResultType.cancel} else "from"
+    row = event_of(transition.communicationType, transition.resultType)
+    is_sent = transition.resultType == rsc.ResultType.request if row is None else row.is_sent
+    return "to" if is_sent or (row is not None and row.kind == sct.EventKind.cancel) else "from"
 
 
 def type_text(declared: rsc.DataType | None) -> str:
@@ -240,6 +243,12 @@ def _communication(file: File, communication: rsc.CommunicationType) -> Iterator
             "Message to the robot's nodes. The controller decides when to send it; requirements can forbid it."
             if incoming
             else "Message from the robot's nodes, sent at any time. No requirement can prevent it."
+        )
+    elif isinstance(communication, SERVED):
+        rows = enumeration(f"`{row.name} {row.preposition}`" for row in events(communication))
+        yield (
+            f"{ros_kind(communication).capitalize()} that the controller serves. Requirements can forbid its response."
+            f" Its events are {rows}."
         )
     else:
         kind = "Service" if isinstance(communication, rsc.Service) else "Action"

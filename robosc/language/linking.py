@@ -17,7 +17,7 @@ from robosc.language.spellings import NEGATION, WRONG_FOLDER, wrong_folder
 from robosc.language.syntax_messages import BASIC_TYPES, did_you_mean
 from robosc.model import expression as ex
 from robosc.model import robosc as rsc
-from robosc.model.semantics.communication import section_of
+from robosc.model.semantics.communication import ros_kind, section_of
 from robosc.model.semantics.expansion import constant_value
 from robosc.model.semantics.failures import FAILURE, FAILURES
 from robosc.model.semantics.naming import TEXT_FUNCTION, enumeration, escape_keyword
@@ -148,7 +148,7 @@ class Linker(AccessLinker):
                 name = names["interface"]
                 element.interface = self._definition(rsc.Interface, "interface", NameKind.INTERFACE, name)
                 if element.interface is not None:
-                    self._folder(element.interface, type(element).__name__.lower(), name)
+                    self._folder(element.interface, ros_kind(element), name)
             case rsc.InterfaceTypeReference():
                 unknown = declare(element, self.interfaces)
                 if unknown is not None:

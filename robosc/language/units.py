@@ -9,7 +9,7 @@ from robosc.base.ros_types.units import UNITS
 from robosc.base.ros_types.wire import PRIMITIVES, Basic, NestedType, Sequence
 from robosc.language.document_symbols import own_elements, span
 from robosc.model import robosc as rsc
-from robosc.model.semantics.communication import carrying_events, event, sending_event
+from robosc.model.semantics.communication import carrying_events, event, provided_event
 from robosc.model.semantics.walks import branches
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ def units(file: File, ros_types: RosTypes) -> Iterator[tuple[int, str]]:
         elif isinstance(element, rsc.DataStatement):
             reference = element.communicationType
             communication = reference.communicationType if reference is not None else None
-            data = _data(communication, sending_event(communication))
+            data = _data(communication, provided_event(element))
             yield from _provided(file, element.data, data, ros_types)
 
 

@@ -23,6 +23,7 @@ from robosc.model.semantics.communication import (
     WAITING,
     feedback_event,
     port_event_of,
+    ros_kind,
     sending_event,
 )
 from robosc.model.semantics.cone_of_influence import commands, cone_of_influence, guard_of
@@ -160,9 +161,8 @@ class _RoboscToSct:
         instance, communication = port.instance, port.communication
         kind, rows = _PLANTS[type(communication)]
         served = isinstance(communication, SERVED)
-        word = type(communication).__name__.removeprefix("Outgoing").lower()
         plant = self.plant(
-            f"{word}_{self.communication_name(port)}",
+            f"{ros_kind(communication)}_{self.communication_name(port)}",
             kind,
             f"{instance.name}.{communication.name}",
             communication.source,

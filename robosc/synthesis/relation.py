@@ -130,7 +130,9 @@ class EventRelation:
         changed = [element for edges in self._edges for element in _changed(edges)]
         self.changed = tuple(element for element in changed if encoding.layout.domains[element].size > 1)
         self.enabled_by = {edges[0].target.eContainer(): self.states_taking(edges) for edges in self._edges}
-        self.enabled = self.happens.exists(self.inputs) if self.has_data else self._all_of(self.enabled_by.values())
+        self.enabled = (
+            self.happens.exists(self.inputs) if self.is_decided_by_data else self._all_of(self.enabled_by.values())
+        )
         self.permissions = {requirement: self._permitted(requirement) for requirement in requirements}
         if self.has_data:
             self.permitted = self._all_of(map(self.condition_of, requirements))
@@ -142,6 +144,11 @@ class EventRelation:
     def has_data(self) -> bool:
         """Whether the supervisor decides with the inputs: the event is a command that carries them."""
         return self.event.controllable and bool(self.event.inputs)
+
+    @property
+    def is_decided_by_data(self) -> bool:
+        """Whether the event may be impossible because of its inputs: a command, or a goal that is rejected."""
+        return bool(self.event.inputs) and (self.event.controllable or self.event.kind == sct.EventKind.request)
 
     @cached_property
     def happens(self) -> Diagram:

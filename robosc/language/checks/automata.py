@@ -13,7 +13,7 @@ from robosc.language.checks.fleets import reference_key
 from robosc.language.checks.rule import Finding, on_line
 from robosc.model import robosc as rsc
 from robosc.model.reflection import tree
-from robosc.model.semantics.communication import event_names, port_event_of
+from robosc.model.semantics.communication import event_names, kind_text, port_event_of
 from robosc.model.semantics.naming import enumeration, escape_keyword
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ def unknown_events(base: rsc.Base) -> Iterator[Finding]:
             allowed = event_names(communication)
             yield Finding(
                 named,
-                f"{type(communication).__name__.lower()} `{communication.name}` has no {named.resultType}, expected"
+                f"{kind_text(communication)} `{communication.name}` has no {named.resultType}, expected"
                 f" {enumeration(f'`{name}`' for name in allowed)}",
                 Removal(
                     f"write `{escape_keyword(communication.name)}` alone",

@@ -53,7 +53,7 @@ def _wrong_folders(text: Text, builder: Builder) -> Iterator[Diagnostic]:
     """Yield a finding for each folder in the name of a ROS type without which the text would be correct."""
     interfaces = {element.name: element for element in builder.declared if isinstance(element, rsc.Interface)}
     for element, names in builder.references.items():
-        kind, named = type(element).__name__.lower(), element
+        kind, named = type(element).__name__.removeprefix("Outgoing").lower(), element
         if isinstance(element, rsc.InterfaceTypeReference):
             kind = section_of(element).kind
         elif isinstance(element, rsc.CommunicationType) and names["interface"].text in interfaces:

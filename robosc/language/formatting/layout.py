@@ -34,6 +34,8 @@ CLAUSES: dict[str, tuple[set[str], set[str]]] = {
     "Message": _COMMUNICATION,
     "Service": _COMMUNICATION,
     "Action": _COMMUNICATION,
+    "OutgoingService": _COMMUNICATION,
+    "OutgoingAction": _COMMUNICATION,
     "ResultTransition": ({"if", "do", "goto"}, set()),
     "TauTransition": ({"if", "do", "goto"}, set()),
     "TimedTransition": ({"without", "do", "goto"}, set()),

@@ -132,6 +132,16 @@ def is_sensor_data(package: str) -> bool:
     return package == "sensor_msgs"
 
 
+def ros_kind(communication: robosc.CommunicationType) -> str:
+    """Return `message`, `service` or `action`."""
+    return type(communication).__name__.removeprefix("Outgoing").lower()
+
+
+def kind_text(communication: robosc.CommunicationType) -> str:
+    """Return the kind of a communication in words: `message`, `service`, `outgoing action`."""
+    return f"{'outgoing ' * isinstance(communication, SERVED)}{ros_kind(communication)}"
+
+
 def events(communication: robosc.CommunicationType | None) -> tuple[PortEvent, ...]:
     """Return the events of a communication. A message has one event, selected by its direction."""
     rows = EVENTS.get(type(communication), ())  # type: ignore[arg-type]

@@ -152,14 +152,18 @@ def provided_data_type(communication: rsc.CommunicationType | None) -> Type:
     return declared_type(sent_type(communication))
 
 
+def provided_type(statement: rsc.DataStatement) -> Type:
+    """Return the type of the data that a `provide` statement or a limit determines; UNKNOWN if there is none."""
+    return declared_type(data_type(_communication(statement.communicationType), provided_event(statement)))
+
+
 def object_value_type(value: rsc.ObjectValue) -> Type:
     """Return the type that an object value needs at its place in provided data; UNKNOWN in any other expression."""
     around = value.eContainer()
     while isinstance(around, ex.Conditional):
         around = around.eContainer()
     if isinstance(around, rsc.DataStatement):
-        communication = _communication(around.communicationType)
-        return declared_type(data_type(communication, provided_event(around)))
+        return provided_type(around)
     is_property = isinstance(around, rsc.ObjectPropertyValue) and around.property
     return declared_type(around.property.type) if is_property else UNKNOWN
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from robosc.base.diagnostics.visible import visible
 from robosc.model import expression as ex
 from robosc.model import robosc, sct
+from robosc.model.semantics.communication import event_of
 from robosc.model.semantics.durations import timer_text
 from robosc.model.semantics.edges import edges_from
 from robosc.model.semantics.instances import Instances
@@ -109,9 +110,9 @@ class _Component(RoboscPrinter):
     def label(self, transition: robosc.Transition) -> Label:
         match transition:
             case robosc.ResultTransition():
-                kind = transition.resultType.name
-                word = "to" if kind == "request" else "from"
-                first = f"on {kind} {word} {self.communication(transition.communicationType)}"
+                row = event_of(transition.communicationType, transition.resultType)
+                word = row.preposition if row is not None else "from"
+                first = f"on {transition.resultType} {word} {self.communication(transition.communicationType)}"
             case robosc.TauTransition():
                 first = "transition"
             case robosc.TimedTransition():

@@ -6,6 +6,7 @@ from itertools import count
 from typing import TYPE_CHECKING, NamedTuple
 
 from robosc.base.diagnostics.visible import visible
+from robosc.model import rosgraph
 from robosc.model.semantics.naming import controller_name
 from robosc.model.semantics.roles import plant_of
 from robosc.tools.diagrams.graph import Arrow, DiagramNode, Graph, Group
@@ -13,7 +14,7 @@ from robosc.tools.diagrams.graph import Arrow, DiagramNode, Graph, Group
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from robosc.model import rosgraph
+    _User = rosgraph.ServiceClient | rosgraph.ActionClient | rosgraph.ServiceServer | rosgraph.ActionServer
 
 _CONTROLLER = "controller"
 _KEYS = {"topic": "t", "service": "s", "action": "a"}
@@ -35,7 +36,8 @@ class Connection(NamedTuple):
 def ros_graph(graph: rosgraph.RosGraph) -> Graph:
     """Return the controller's node with its topics, services and actions: their types, directions and uses.
 
-    An arrow has the direction of the data. Services and actions have arrows with two heads.
+    An arrow has the direction of the data. Services and actions that the controller calls have arrows
+    with two heads. Those that it serves have an arrow to the controller.
     """
     connected = connections(graph)
     numbers = {kind: count(1) for kind in _KEYS}
@@ -46,7 +48,7 @@ def ros_graph(graph: rosgraph.RosGraph) -> Graph:
     ]
     arrows = []
     for key, connection in zip(keys, connected, strict=True):
-        comes_in = connection.kind == "topic" and connection.direction != "out"
+        comes_in = connection.direction == "in" or (connection.kind == "topic" and connection.direction == "both")
         ends = (key, _CONTROLLER) if comes_in else (_CONTROLLER, key)
         arrows.append(Arrow(*ends, both=connection.direction == "both"))
     controller = DiagramNode(_CONTROLLER, "controller", visible(controller_name(graph)))
@@ -55,7 +57,13 @@ def ros_graph(graph: rosgraph.RosGraph) -> Graph:
 
 def connections(graph: rosgraph.RosGraph) -> list[Connection]:
     """Return the topics, services and actions of a controller, in this order, with printable names and types."""
-    return [*_topics(graph), *_servers("service", graph.serviceClients), *_servers("action", graph.actionClients)]
+    return [
+        *_topics(graph),
+        *_servers("service", graph.serviceClients),
+        *_servers("service", graph.serviceServers),
+        *_servers("action", graph.actionClients),
+        *_servers("action", graph.actionServers),
+    ]
 
 
 def _topics(graph: rosgraph.RosGraph) -> Iterator[Connection]:
@@ -73,9 +81,11 @@ def _topics(graph: rosgraph.RosGraph) -> Iterator[Connection]:
         yield Connection(visible(topic), "topic", direction, list(own_types), uses[topic])
 
 
-def _servers(kind: str, clients: Iterable[rosgraph.ServiceClient | rosgraph.ActionClient]) -> Iterator[Connection]:
-    for client in clients:
-        yield Connection(visible(client.identifier), kind, "both", [_type(client.interface)], [_use(client.request)])
+def _servers(kind: str, users: Iterable[_User]) -> Iterator[Connection]:
+    """Yield the services or actions that the controller calls, or those that it serves: their requests come in."""
+    for user in users:
+        direction = "both" if isinstance(user.request, rosgraph.Sending) else "in"
+        yield Connection(visible(user.identifier), kind, direction, [_type(user.interface)], [_use(user.request)])
 
 
 def _type(interface: rosgraph.Interface) -> str:

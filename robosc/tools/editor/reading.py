@@ -27,6 +27,8 @@ _KINDS: dict[type, types.SymbolKind] = {
     rsc.Message: types.SymbolKind.Event,
     rsc.Service: types.SymbolKind.Method,
     rsc.Action: types.SymbolKind.Method,
+    rsc.OutgoingService: types.SymbolKind.Method,
+    rsc.OutgoingAction: types.SymbolKind.Method,
     rsc.Variable: types.SymbolKind.Variable,
     rsc.State: types.SymbolKind.EnumMember,
     rsc.RequirementState: types.SymbolKind.EnumMember,

@@ -11,6 +11,7 @@ from robosc.language.checks.edits import Choice, Insertion, Removal, Renaming, R
 from robosc.language.checks.libraries import instances, reachable
 from robosc.language.checks.rule import Finding, rule
 from robosc.model import robosc as rsc
+from robosc.model.semantics.communication import kind_text
 from robosc.model.semantics.naming import NUMBER, TEXT_FUNCTION, escape_keyword
 
 if TYPE_CHECKING:
@@ -51,7 +52,7 @@ def _communications(base: rsc.Base) -> set[rsc.CommunicationType]:
 
 
 def _describe(port: PortInstance, base: rsc.Base) -> str:
-    kind = type(port.communication).__name__.lower()
+    kind = kind_text(port.communication)
     return f"{kind} `{port.communication.name}` of `{_owner(port, base)}`"
 
 

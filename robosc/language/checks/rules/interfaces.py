@@ -47,9 +47,11 @@ def _reason(communication: rsc.CommunicationType, types: list[Type]) -> str | No
     named = next((kind for kind in types if isinstance(kind, ObjectType)), None)
     if named is not None:
         return f"its data is {named}, and only an interface names its ROS type"
-    if isinstance(communication, rsc.Action):
+    if isinstance(communication, rsc.Action | rsc.OutgoingAction):
         return "an action has no ROS type of its own"
-    if isinstance(communication, rsc.Service) and any(kind not in {NONE, UNKNOWN} for kind in types):
+    if isinstance(communication, rsc.Service | rsc.OutgoingService) and any(
+        kind not in {NONE, UNKNOWN} for kind in types
+    ):
         return "only a service whose request and response are `none` has a ROS type of its own, `std_srvs/Empty`"
     return None
 

@@ -16,6 +16,7 @@ from robosc.language.checks.type_repairs import repair
 from robosc.model import expression as ex
 from robosc.model import robosc as rsc
 from robosc.model.reflection import contents, tree
+from robosc.model.semantics.communication import kind_text
 from robosc.model.semantics.cone_of_influence import accesses, conditions
 from robosc.model.semantics.durations import bounds, set_on_robot
 from robosc.model.semantics.expansion import LARGEST, Expansion, constant_value, is_unreadable
@@ -132,7 +133,7 @@ def _impossible_reason(value: object, communication: rsc.CommunicationType | Non
         return None
     if not is_failure(value.eContainer().eContainer()):
         return None
-    kind = type(communication).__name__.lower()
+    kind = kind_text(communication) if communication is not None else ""
     return f"no {kind} fails because `{value.name}`, expected a reason that {kind}s have"
 
 

@@ -18,7 +18,7 @@ from robosc.language.checks.libraries import instances
 from robosc.language.checks.rule import Finding, rule
 from robosc.model import robosc as rsc
 from robosc.model import sct
-from robosc.model.semantics.communication import CONTROLLABLE, port_event_of
+from robosc.model.semantics.communication import CONTROLLABLE, REQUESTS, SERVED, port_event_of
 from robosc.model.semantics.cone_of_influence import accesses
 from robosc.model.semantics.instances import assumed_components, definition_of
 from robosc.model.semantics.naming import enumeration, escape_keyword
@@ -56,7 +56,7 @@ def requirement_event(base: rsc.Base) -> Iterator[Finding]:
 
 
 #: Kinds of events that an assumption restricts.
-_FROM_ROBOT = (sct.EventKind.response, sct.EventKind.feedback)
+_FROM_ROBOT = (sct.EventKind.response, sct.EventKind.feedback, *REQUESTS)
 
 
 def _assumed(named: rsc.EventReference) -> Iterator[Finding]:
@@ -66,11 +66,10 @@ def _assumed(named: rsc.EventReference) -> Iterator[Finding]:
         return
     maker = "the controller decides on" if event.kind in CONTROLLABLE else "the node itself makes"
     hint = "write a requirement" if isinstance(communication, rsc.Message) else _answers(named, communication)
-    yield Finding(
-        named,
-        f"{maker} the {event.name} of `{communication.name}`, expected an outgoing message, feedback or a response",
-        hint,
+    others = (
+        "a request or a cancel" if isinstance(communication, SERVED) else "an outgoing message, feedback or a response"
     )
+    yield Finding(named, f"{maker} the {event.name} of `{communication.name}`, expected {others}", hint)
 
 
 def _answers(named: rsc.EventReference, communication: rsc.CommunicationType) -> Choice:
@@ -78,6 +77,8 @@ def _answers(named: rsc.EventReference, communication: rsc.CommunicationType) ->
     name, whole, communicated = escape_keyword(communication.name), part_of(named), part_of(named.communicationType)
     ways: list[Way] = []
     kinds = ("response", "feedback") if isinstance(communication, rsc.Action) else ("response",)
+    if isinstance(communication, SERVED):
+        kinds = ("request",)
     for kind in kinds:
         hint = f"write `{kind} from {name}`"
         if isinstance(named, rsc.NamedEvent):

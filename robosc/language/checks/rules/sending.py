@@ -8,9 +8,9 @@ from robosc.language.checks.definitions import communication_of, restricted_even
 from robosc.language.checks.edits import Choice, Removal, Replacement, part_of
 from robosc.language.checks.rule import Finding, rule
 from robosc.model import robosc as rsc
-from robosc.model.semantics.communication import sending_event
+from robosc.model.semantics.communication import kind_text, provided_event, sending_event
 from robosc.model.semantics.naming import escape_keyword
-from robosc.model.semantics.typing import NONE, UNKNOWN, provided_data_type
+from robosc.model.semantics.typing import NONE, UNKNOWN, provided_data_type, provided_type
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -44,13 +44,25 @@ def data_provisioning(base: rsc.Base) -> Iterator[Finding]:
                     (Removal("leave the provide statement out", statement), _as_incoming(communication)),
                 ),
             )
-        elif communication is not None and provided_data_type(communication) == NONE:
-            what = "it" if isinstance(communication, rsc.Message) else "its request"
+        elif communication is not None and provided_event(statement) is None:
+            yield Finding(
+                statement.communicationType,
+                f"`{communication.name}` sends no feedback, expected an outgoing action",
+                Removal("leave `feedback to` out", part_of(statement).find("feedback", "to")),
+            )
+        elif communication is not None and provided_type(statement) == NONE:
+            what = "it" if isinstance(communication, rsc.Message) else f"its {_sent(statement)}"
             yield Finding(
                 statement.data or statement,
                 f"data is provided to `{communication.name}`, expected none: {what} is declared with the type `none`",
                 Removal("leave the provide statement out: it has no data to send", statement),
             )
+
+
+def _sent(statement: rsc.ProvideStatement) -> str:
+    """Return the word for the event whose data a statement provides."""
+    row = provided_event(statement)
+    return row.name if row is not None else ""
 
 
 def _limits(base: rsc.Base) -> Iterator[Finding]:
@@ -60,7 +72,7 @@ def _limits(base: rsc.Base) -> Iterator[Finding]:
         if communication is None or (is_message and provided_data_type(communication) not in {NONE, UNKNOWN}):
             continue
         if not is_message:
-            why = f"the {communication.eClass.name.lower()} `{communication.name}`"
+            why = f"the {kind_text(communication)} `{communication.name}`"
         elif sending_event(communication) is None:
             why = f"`{communication.name}`, which the controller receives"
         elif provided_data_type(communication) == NONE:

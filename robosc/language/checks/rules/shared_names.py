@@ -8,7 +8,7 @@ from robosc.base.diagnostics import Severity
 from robosc.language.checks.libraries import instances
 from robosc.language.checks.rule import Finding, rule
 from robosc.model import robosc as rsc
-from robosc.model.semantics.communication import ros_type, sent_type
+from robosc.model.semantics.communication import kind_text, ros_type, sent_type
 from robosc.model.semantics.naming import escape_keyword
 from robosc.model.semantics.printing import RoboscPrinter
 from robosc.model.semantics.walks import branches
@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
     from robosc.model import expression as ex
     from robosc.model.semantics.instances import Instance, Instances, PortInstance, Statement
+
+    _Kind = type[rsc.CommunicationType] | tuple[type[rsc.CommunicationType], ...]
 
 
 @rule("topic-types")
@@ -35,14 +37,30 @@ def topic_types(base: rsc.Base) -> Iterator[Finding]:
 
 @rule("shared-server")
 def shared_server(base: rsc.Base) -> Iterator[Finding]:
-    """All services with one name have one ROS type, and so do all actions with one name."""
-    for kind in (rsc.Service, rsc.Action):
-        for first, second in _of_other_types(base, kind):
+    """All services with one name have one ROS type and at most one server, and so do all actions with one name."""
+    for kinds in ((rsc.Service, rsc.OutgoingService), (rsc.Action, rsc.OutgoingAction)):
+        for first, second in _of_other_types(base, kinds):
             yield Finding(
                 _place(second),
                 f"{_described(second)} has the type `{_type(second)}`, and {_described(first)} of the same name"
                 f" `{_name(second)}` has the type `{_type(first)}`: only one of them can be answered",
                 "use one type for both, or a separate name for one of them",
+                related=first.communication,
+            )
+        yield from _served_twice(base, kinds[1])
+
+
+def _served_twice(base: rsc.Base, kind: type[rsc.CommunicationType]) -> Iterator[Finding]:
+    """Report communications that the controller would serve a second time."""
+    firsts: dict[str, PortInstance] = {}
+    for second in _ports(instances(base), kind) if isinstance(base, rsc.Robot) else ():
+        first = firsts.setdefault(_name(second).removeprefix("/"), second)
+        if first is not second and ros_type(first.communication) == ros_type(second.communication):
+            yield Finding(
+                _place(second),
+                f"{_described(second)} has the name `{_name(second)}` of {_described(first)}, expected a name of its"
+                " own: a client reaches only one of them",
+                "give it another `identifier`, or use one of them for both",
                 related=first.communication,
             )
 
@@ -99,7 +117,7 @@ def _shown(expression: ex.Expression, within: Instance | None, known: Instances)
     return RoboscPrinter()(known.expanded(expression, within))
 
 
-def _of_other_types(base: rsc.Base, kind: type[rsc.CommunicationType]) -> Iterator[tuple[PortInstance, PortInstance]]:
+def _of_other_types(base: rsc.Base, kind: _Kind) -> Iterator[tuple[PortInstance, PortInstance]]:
     """Yield the communications whose ROS type differs from that of the first with the same name, with that first."""
     if not isinstance(base, rsc.Robot):
         return
@@ -113,7 +131,7 @@ def _of_other_types(base: rsc.Base, kind: type[rsc.CommunicationType]) -> Iterat
             yield first, second
 
 
-def _ports(known: Instances, kind: type[rsc.CommunicationType]) -> Iterator[PortInstance]:
+def _ports(known: Instances, kind: _Kind) -> Iterator[PortInstance]:
     """Yield the communications of a kind whose instances have all arguments; `argument` reports the others."""
     for port in known.ports():
         complete = not {*port.instance.definition.parameters} - port.instance.arguments.keys()
@@ -128,7 +146,7 @@ def _place(port: PortInstance) -> ex.Located:
 
 
 def _described(port: PortInstance) -> str:
-    kind = type(port.communication).__name__.lower()
+    kind = kind_text(port.communication)
     return f"{kind} `{port.communication.name}` of `{port.instance.name}`"
 
 

@@ -23,7 +23,7 @@ from robosc.language.checks.edits import Choice, Part, Removal, Replacement, par
 from robosc.language.checks.fleets import reference_key
 from robosc.language.checks.rule import Finding, on_line, rule
 from robosc.model import robosc as rsc
-from robosc.model.semantics.communication import event_names
+from robosc.model.semantics.communication import event_names, events, kind_text
 from robosc.model.semantics.naming import enumeration, escape_keyword
 
 if TYPE_CHECKING:
@@ -56,7 +56,8 @@ def result_type(base: rsc.Base) -> Iterator[Finding]:
         communication = communication_of(transition.communicationType)
         event, allowed = str(transition.resultType), event_names(communication)
         if communication is not None and event not in allowed:
-            prepositions = {name: "to" if name == "request" else "from" for name in allowed}
+            rows = {row.name: row for row in events(communication)}
+            prepositions = {name: rows[name].preposition for name in allowed}
             forms = {
                 f"on {name} {word}": f"`on {name} {word} {escape_keyword(communication.name)}`"
                 for name, word in prepositions.items()
@@ -76,7 +77,7 @@ def result_type(base: rsc.Base) -> Iterator[Finding]:
                 ways.append(Replacement(declared, opposite, direction_word))
             yield Finding(
                 transition,
-                f"{direction}{type(communication).__name__.lower()} `{communication.name}` has no {event}, expected"
+                f"{direction}{kind_text(communication)} `{communication.name}` has no {event}, expected"
                 f" {enumeration(f'`{name}`' for name in allowed)}",
                 Choice(hint, tuple(ways)),
             )
@@ -88,7 +89,7 @@ def _silences(transition: rsc.TimedTransition) -> Iterator[Finding]:
         known = isinstance(communication, rsc.Message) and "response" in event_names(communication)
         if communication is not None and not known:
             direction = f"{communication.direction} " if isinstance(communication, rsc.Message) else ""
-            kind = f"{direction}{type(communication).__name__.lower()}"
+            kind = f"{direction}{kind_text(communication)}"
             yield Finding(
                 reference,
                 f"`without` names the {kind} `{communication.name}`, expected an outgoing message",
