@@ -11,6 +11,8 @@ from robosc.base.ros_types import Section
 from robosc.engine import Settings as LoopSettings
 from robosc.language.configuration import NO_STOP, NO_STOP_ON_SILENCE, NO_STOP_ON_VIOLATION
 from robosc.language.configuration.parameters import topic_words, watchdog
+from robosc.model import sct
+from robosc.model.semantics.component_parts import answers
 from robosc.model.semantics.messages import paths_set
 from robosc.model.semantics.operators import UnreadableError
 from robosc.model.semantics.roles import event_name, plant_of
@@ -28,7 +30,7 @@ from robosc.run.runtime.core.times import RESOLUTION_MS
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
-    from robosc.model import rosgraph, sct
+    from robosc.model import rosgraph
     from robosc.model.semantics.component_parts import Parts
     from robosc.run.runtime.core.event_loop import EventLoop, Timer
     from robosc.run.runtime.core.json_text import Json
@@ -38,6 +40,8 @@ if TYPE_CHECKING:
 
 #: Message sent last, if nothing was sent.
 _NOT_SENT: Message = object()
+#: Ends of the goals of clients, by the answers to them.
+_OUTCOMES = {"response": GoalOutcome.SUCCEEDED, "error": GoalOutcome.ABORTED, "canceled": GoalOutcome.CANCELED}
 
 
 @dataclass
@@ -95,9 +99,9 @@ class Controller(EventHandler):
         self._withheld: set[str] = set()
         #: Enabled commands whose data the supervisor forbids.
         self._forbidden: set[str] = set()
-        clients: list[Client] = [*graph.serviceClients, *graph.actionClients]
-        servers: list[Server] = [*graph.serviceServers, *graph.actionServers]
-        self._monitor = GraphMonitor(port, event_loop, clients, servers)
+        called: list[Client | Server] = [*graph.serviceClients, *graph.actionClients]
+        called += [*graph.serviceServers, *graph.actionServers]
+        self._monitor = GraphMonitor(port, event_loop, called)
         awaited = {topic.removeprefix("/") for topic in settings.configuration.wait_for}
         #: Topics that commands wait for and that have not been received yet.
         self._unheard = [topic for topic in graph.subscriptions if topic.topic.removeprefix("/") in awaited]
@@ -130,7 +134,8 @@ class Controller(EventHandler):
 
     def _service_server(self, service: rosgraph.ServiceServer) -> ServiceServer:
         server = ServiceServer(self._event_loop, partial(self.take, service), self._warner(service))
-        self._add_answer(service, service.response, Section.RESPONSE, server.respond)
+        for sending in answers(service).values():
+            self._add_sender(service, service.identifier, sending, Section.RESPONSE, server.respond)
         return server
 
     def _action_server(self, action: rosgraph.ActionServer) -> ActionServer:
@@ -142,21 +147,14 @@ class Controller(EventHandler):
             default=lambda: self._port.create(action.interface, Section.RESULT),
         )
         server = ActionServer(self._event_loop, events, self._warner(action))
-        self._add_answer(action, action.feedback, Section.FEEDBACK, server.feed_back)
-        ends = (action.response, action.error, action.canceled)
-        outcomes = (GoalOutcome.SUCCEEDED, GoalOutcome.ABORTED, GoalOutcome.CANCELED)
-        for sending, outcome in zip(ends, outcomes, strict=True):
-            self._add_answer(action, sending, Section.RESULT, partial(server.end, outcome))
+        for word, sending in answers(action).items():
+            section = Section.FEEDBACK if word == "feedback" else Section.RESULT
+            send = partial(server.end, _OUTCOMES[word]) if word in _OUTCOMES else server.feed_back
+            self._add_sender(action, action.identifier, sending, section, send)
         return server
 
     def _warner(self, server: Server) -> Callable[[str], None]:
         return lambda text: self._port.warn(f"{server.identifier}: {text}")
-
-    def _add_answer(
-        self, server: Server, sending: rosgraph.Sending | None, section: Section, send: Callable[[Message], None]
-    ) -> None:
-        if sending is not None:
-            self._add_sender(server, server.identifier, sending, section, send)
 
     def _ends(self, client: Client) -> tuple[Callable[[Message], None], Callable[[Failure, str, Message], None]]:
         """Return the handlers of a response and of a failure of a service or action."""
@@ -230,6 +228,7 @@ class Controller(EventHandler):
 
     @property
     def busy(self) -> bool:
+        """Whether the stopping node waits for the fate of a goal, or for the client of one that it serves."""
         return super().busy or any(server.waits for server in self.actions.values())
 
     def _watch(self, topic: str, seconds: float) -> Watchdog:
@@ -276,16 +275,18 @@ class Controller(EventHandler):
         event = event_name(reception.event)
         if self._halted or self._unheard:
             return False
-        if not engine.enabled(event):
-            with self._batch():
-                self._receive(reception, action.identifier, goal)  # it may violate an assumption
-            return False
         try:
             engine.set_inputs(event, self._data.receive(reception.event, reception.inputs, goal).inputs)
         except UnreadableError as fault:
             self._warn(reception.event, f"{action.identifier}: {fault}")
             return False
-        return engine.permits_inputs(event)
+        if not engine.permits_inputs(event):
+            return False
+        if not engine.enabled(event):
+            with self._batch():
+                self._receive(reception, action.identifier, goal)  # it may violate an assumption
+            return False
+        return True
 
     def take(self, server: Server, request: Message) -> bool:
         """Handle a request or an accepted goal of a client as a batch; return whether its event has happened."""
@@ -388,7 +389,9 @@ class Controller(EventHandler):
         silent = [topic for topic in parts.topics if topic in self._watchdogs and self._watchdogs[topic].tripped]
         unheard = [topic for topic in parts.topics if topic in self._unheard]
         commanded = dict.fromkeys(self._publishers.get(sending) for sending in parts.commands)
-        watched = [*parts.topics, *(publisher for publisher in commanded if publisher is not None), *parts.clients]
+        watched: list[rosgraph.Subscription | rosgraph.Publisher | Client | Server] = [*parts.topics]
+        watched += [publisher for publisher in commanded if publisher is not None]
+        watched += [*parts.clients, *parts.servers]
         failed = [(client.identifier, self._failures[client].why) for client in parts.clients]
         failed += [
             (client.identifier, self._starters[client].trouble) for client in parts.clients if client in self._starters
@@ -423,6 +426,8 @@ class Controller(EventHandler):
     def _warn_withheld(self, sender: _Sender, fault: NotFiniteError | UnreadableError) -> None:
         event = sender.sending.event
         word = plant_of(event).name.partition("_")[2]
+        if sender.sending.event.kind != sct.EventKind.trigger:
+            word += f"_{event.name.removeprefix('c_')}"
         path = str(fault) if isinstance(fault, NotFiniteError) else ""
         self._warn((event_name(event), path), f"{word} is withheld: {why_unsendable(fault)}")
 

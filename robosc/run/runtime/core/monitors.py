@@ -61,20 +61,17 @@ class GraphMonitor:
 
     Each fault is logged once, and `faults` has it as long as it lasts: another type, a quality of service that does not
     fit, no publisher for five seconds, another publisher on a topic that the controller commands, a server of another
-    type if there is none of the right one, several servers of the right type, and another server of what the controller
+    type if there is none of the right one, and several servers of the right type, the controller among them if it
     serves.
     """
 
-    def __init__(
-        self, port: ControllerPort, loop: EventLoop, clients: Sequence[Client] = (), servers: Sequence[Server] = ()
-    ) -> None:
+    def __init__(self, port: ControllerPort, loop: EventLoop, called: Sequence[Client | Server] = ()) -> None:
         self._port = port
         self._loop = loop
-        self._clients = clients
-        self._servers = servers
+        self._called = called
         self._missing: dict[str, int] = {}
-        self._twice: Counter[Client] = Counter()
-        self._other_types: set[Client] = set()
+        self._twice: Counter[Client | Server] = Counter()
+        self._other_types: set[Client | Server] = set()
         self._reported: set[str] = set()
         self._faults: dict[rosgraph.Subscription | rosgraph.Publisher | Client | Server, list[str]] = {}
 
@@ -98,11 +95,8 @@ class GraphMonitor:
                 self._check_subscription(element, endpoints)
             else:
                 self._check_publisher(element, endpoints)
-        for client in self._clients:
-            self._check_servers(client)
-        for server in self._servers:
-            for node, _ in self._port.serving_nodes(server):
-                self._note(server, f"{server.identifier}: {node} serves it, too")
+        for called in self._called:
+            self._check_servers(called)
         self.start()
 
     def _check_subscription(self, subscription: rosgraph.Subscription, endpoints: list[Endpoint]) -> None:
@@ -122,26 +116,29 @@ class GraphMonitor:
             elif endpoint.node:
                 self._note(publisher, f"{publisher.topic}: {endpoint.node} publishes it, too")
 
-    def _check_servers(self, client: Client) -> None:
-        serving = self._port.serving_nodes(client)
+    def _check_servers(self, called: Client | Server) -> None:
+        serving = self._port.serving_nodes(called)
         if not serving:
-            self._twice[client] = 0
+            self._twice[called] = 0
             return
-        expected = self._port.type_name(client.interface)
-        others = [] if self._port.is_served(client) else [server for server in serving if server[1] != expected]
+        expected = self._port.type_name(called.interface)
+        others = [] if self._is_served(called) else [server for server in serving if server[1] != expected]
         for node, other in others:
-            self._other_types.add(client)
-            self._note(client, f"{client.identifier}: {node} serves {other}, not {expected}")
-        self._check_single(client, sorted(node for node, kind in serving if kind == expected))
+            self._other_types.add(called)
+            self._note(called, f"{called.identifier}: {node} serves {other}, not {expected}")
+        self._check_single(called, sorted(node for node, kind in serving if kind == expected))
 
-    def _check_single(self, client: Client, servers: list[str]) -> None:
+    def _is_served(self, called: Client | Server) -> bool:
+        return isinstance(called, rosgraph.ServiceServer | rosgraph.ActionServer) or self._port.is_served(called)
+
+    def _check_single(self, called: Client | Server, servers: list[str]) -> None:
         """Note several servers of the right type: only the first answer counts."""
         names = sorted(set(servers))
-        self._twice[client] = self._twice[client] + 1 if len(names) < len(servers) else 0
+        self._twice[called] = self._twice[called] + 1 if len(names) < len(servers) else 0
         if len(names) > 1:
-            self._note(client, f"{client.identifier}: {' and '.join(names)} serve it: only one answer counts")
-        elif self._twice[client] > _LEASE:
-            self._note(client, f"{client.identifier}: several nodes {names[0]} serve it: only one answer counts")
+            self._note(called, f"{called.identifier}: {' and '.join(names)} serve it: only one answer counts")
+        elif self._twice[called] > _LEASE:
+            self._note(called, f"{called.identifier}: several nodes {names[0]} serve it: only one answer counts")
 
     def _compare(self, own: rosgraph.Subscription | rosgraph.Publisher, other: Endpoint, does: str, has: str) -> None:
         topic, expected = own.topic, self._port.type_name(own.interface)

@@ -190,7 +190,7 @@ class ControllerPort(Port, Protocol):
     def serving_nodes(self, element: Client | Server) -> Sequence[tuple[str, str]]:
         """Return the nodes that serve the name of a service or action, each with its type.
 
-        A single server of the right type may be left out. This node is left out if it serves the element.
+        A single server of the right type may be left out.
         """
 
     def endpoints(self) -> Mapping[rosgraph.Subscription | rosgraph.Publisher, list[Endpoint]]:

@@ -290,8 +290,6 @@ class Ros2Node(RunningNode):
             except NodeNameNonExistentError:
                 continue  # it has just gone
             full_name = f"{space.rstrip('/')}/{node}"
-            if full_name == self.full_name and isinstance(element, rosgraph.ServiceServer | rosgraph.ActionServer):
-                continue
             nodes += [(full_name, kind.removesuffix(part[1])) for kind in served.get(name, ())]
         return nodes
 
