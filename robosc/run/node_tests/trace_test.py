@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from robosc.model import rosgraph
     from robosc.run.node_tests.coverage import Goal
     from robosc.run.node_tests.samples import IncomingKind
-    from robosc.run.runtime.core.port import Client
+    from robosc.run.runtime.core.port import Client, Server
 
 
 def trace_test_of(
@@ -132,8 +132,7 @@ def _connections(
             for action in graph.actionClients
         ],
         "serviceServers": [
-            {**_server(service, incoming), "response": _event(service.response)}
-            for service in graph.serviceServers
+            {**_server(service, incoming), "response": _event(service.response)} for service in graph.serviceServers
         ],
         "actionServers": [
             {
@@ -160,9 +159,7 @@ def _client(client: Client, started: Mapping[str, bool | int]) -> dict[str, Any]
     }
 
 
-def _server(
-    server: rosgraph.ServiceServer | rosgraph.ActionServer, incoming: Mapping[sct.Event, IncomingKind]
-) -> dict[str, Any]:
+def _server(server: Server, incoming: Mapping[sct.Event, IncomingKind]) -> dict[str, Any]:
     return {
         "name": server.identifier,
         "type": _type(server.interface),

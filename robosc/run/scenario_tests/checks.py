@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from robosc.analysis.explain import NamingError, find_event
@@ -12,7 +13,7 @@ from robosc.model import sct
 from robosc.model.semantics.communication import ANSWERS, REQUESTS
 from robosc.model.semantics.failures import brings_data, possible_reasons
 from robosc.model.semantics.messages import sent_messages
-from robosc.model.semantics.roles import assumptions, event_name, plant_of
+from robosc.model.semantics.roles import assumptions, event_name, is_goal, plant_of
 from robosc.run.scenario_tests.reading import (
     Acceptance,
     Every,
@@ -97,13 +98,23 @@ def _about_events(model: sct.SupervisoryControlModel, scenario: Scenario) -> Ite
             event = find_event(model, named.event)
         except NamingError as error:
             if named is line:
-                yield line.fault(error.message, error.hint or None)
+                yield _without_cancel(model, named) or line.fault(error.message, error.hint or None)
             continue
         yield from _about_event(line, event, is_repeated=event in repeated)
         if isinstance(line, Every):
             repeated.add(event)
         elif isinstance(line, Stop):
             repeated.discard(event)
+
+
+def _without_cancel(model: sct.SupervisoryControlModel, line: Line) -> Diagnostic | None:
+    """Return a finding if a line cancels a goal that no client can cancel, else None."""
+    action, _, kind = line.event.rpartition(".") if isinstance(line, IncomingEvent) else ("", "", "")
+    with suppress(NamingError):
+        if kind == "cancel" and is_goal(find_event(model, f"{action}.request")):
+            hint = f"write a transition `on cancel from {action}` in the model"
+            return line.fault(f"the controller rejects each request to cancel a goal of `{action}`", hint)
+    return None
 
 
 def _about_event(line: Line, event: sct.Event, *, is_repeated: bool) -> Iterator[Diagnostic]:

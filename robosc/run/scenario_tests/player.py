@@ -63,7 +63,7 @@ if TYPE_CHECKING:
     from robosc.language.configuration import Configuration
     from robosc.model import expression as ex
     from robosc.run.node_tests.robot import RunningGoal
-    from robosc.run.runtime.core.port import Client
+    from robosc.run.runtime.core.port import Client, Server
     from robosc.run.scenario_tests.operations import Operations
     from robosc.run.scenario_tests.reading import Scenario
 
@@ -129,8 +129,9 @@ class Player(Drive):
             self._acts[action.feedback.event] = partial(self._feed_back, action)
             self._acts[action.response.event] = partial(self._end, action, GoalOutcome.SUCCEEDED)
             self._acts[action.canceled.event] = partial(self._end, action, GoalOutcome.CANCELED)
-        self._served: dict[sct.Event, rosgraph.ServiceServer | rosgraph.ActionServer] = {}
-        for server in (*graph.serviceServers, *graph.actionServers):
+        self._served: dict[sct.Event, Server] = {}
+        servers: list[Server] = [*graph.serviceServers, *graph.actionServers]
+        for server in servers:
             self._served[server.request.event] = server
             self._acts[server.request.event] = partial(self._request, server)
 
@@ -349,7 +350,7 @@ class Player(Drive):
     def _end(self, action: rosgraph.ActionClient, outcome: GoalOutcome, data: Any) -> None:
         self._robot.goals.pop(action).handlers.ended(outcome, data, "")
 
-    def _request(self, server: rosgraph.ServiceServer | rosgraph.ActionServer, data: Any) -> None:
+    def _request(self, server: Server, data: Any) -> None:
         """Let a client send a request or a goal. A goal may be rejected, and a request may wait."""
         if isinstance(server, rosgraph.ServiceServer):
             self._controller.request(server, data)
@@ -360,11 +361,8 @@ class Player(Drive):
         """Let a client ask to cancel the goal of an action that the controller serves."""
         [server] = [action for action in self._graph.actionServers if plant_of(action.request.event) is plant_of(event)]
         if not self._controller.request_cancel(server):
-            called = self._called(event)
-            if server.cancel is None:
-                hint = f"write a transition `on cancel from {called}` in the model"
-                raise NamingError("the controller rejects each cancel: no transition of the model names it", hint)
-            raise NamingError(f"`{called}` has no goal to cancel", "a client can cancel an accepted goal once")
+            message = f"`{self._called(event)}` has no goal to cancel"
+            raise NamingError(message, "a client can cancel an accepted goal once")
 
     # Failures
 

@@ -421,11 +421,8 @@ class _Reader:
                 self._fault(
                     expected, "this is not a single condition", "close each bracket, and write a comment after `//`"
                 )
-        elif match["taken"] and match["kind"] not in (None, "request"):
-            self._fault(expected, "only a goal is accepted or rejected", "write `inspect accepted` or `inspect rejected`")
         elif match["taken"]:
-            accepted = match["taken"] == "accepted"
-            yield Acceptance(line.file, line.span, event_in_words(match), accepted, within=within)
+            yield from self._taken(match, line, within, expected)
         elif match["sent"] or match["not_sent"]:
             yield from self._sent(match, line, within, expected)
         else:
@@ -433,6 +430,13 @@ class _Reader:
             if by is not None and not by.strip():
                 self._fault(expected, "`forbidden by` names no requirement", "write its name, or a part of its text")
             yield Permission(line.file, line.span, event_in_words(match), bool(match["forbidden"]), by, within=within)
+
+    def _taken(self, match: re.Match[str], line: Line, within: float | None, expected: Line) -> Iterator[Line]:
+        if match["kind"] not in (None, "request"):
+            hint = "write `inspect accepted` or `inspect rejected`"
+            self._fault(expected, "only a goal is accepted or rejected", hint)
+            return
+        yield Acceptance(line.file, line.span, event_in_words(match), match["taken"] == "accepted", within=within)
 
     def _sent(self, match: re.Match[str], line: Line, within: float | None, expected: Line) -> Iterator[Line]:
         data, count = None, None

@@ -5,14 +5,17 @@ from pathlib import Path
 
 import pytest
 
+import robosc
 from robosc.analysis.verify import validate_model
-from robosc.analysis.verify.verdict import Outcome
+from robosc.analysis.verify.controller_reading import validate_controller
+from robosc.analysis.verify.verdict import Outcome, Verdict
 from robosc.language.checks import check
 from robosc.language.reading import read
 from robosc.language.text import Documents
-from robosc.m2m import robosc_to_sct
+from robosc.m2m import robosc_to_rosgraph, robosc_to_sct
+from robosc.m2t.models import Models
 from robosc.model import robosc as rsc
-from robosc.model import sct
+from robosc.model import rosgraph, sct
 from robosc.model.semantics.edges import edges_of
 from robosc.model.semantics.roles import event_name
 
@@ -72,7 +75,7 @@ robot Served {
     requirement inspect needs !Desk.busy
     requirement feedback to inspect after each request from inspect
     requirement at most 2 error to inspect since canceled to inspect
-    requirement never Desk.busy and Camera.watching and Lid.shut
+    property never Desk.busy and Camera.watching and Lid.shut
 }
 """
 
@@ -190,3 +193,19 @@ def test_a_wrong_plant_is_refuted(robot: rsc.Base, change: Callable[[sct.Supervi
     model = robosc_to_sct.transform(robot)[0]
     change(model)
     assert validate_model(robot, model).outcome is Outcome.REFUTED
+
+
+def test_the_node_serves_what_the_text_has(robot: rsc.Base) -> None:
+    plants, trace = robosc_to_sct.transform(robot)
+    robosc.synthesize(plants)
+
+    def verdict(change: Callable[[rosgraph.RosGraph], object]) -> Verdict:
+        graph = robosc_to_rosgraph.transform(trace)
+        change(graph)
+        return validate_controller(Models(plants, graph, robot))
+
+    assert verdict(lambda _: None).outcome is Outcome.PROVED
+    renamed = verdict(lambda graph: setattr(graph.serviceServers[0], "identifier", "/begin"))
+    assert renamed.explanation == "`Desk.start` is `start` in ROS by the text, and `/begin` in the node"
+    lost = verdict(lambda graph: graph.actionServers.pop())
+    assert lost.explanation == "the text and the node do not serve the same: `Camera.closed`"

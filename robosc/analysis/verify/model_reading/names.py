@@ -314,9 +314,9 @@ class Names:
                 return self._called(self.leaf(At(Slot(instance.plant), item.name)), instance.name, item.name)
             case robosc.Variable() if instance is not None:
                 return (yield from self._variable(access, instance, place))
-            case (
-                robosc.Service() | robosc.Action() | robosc.OutgoingService() | robosc.OutgoingAction()
-            ) if instance is not None:
+            case robosc.Service() | robosc.Action() | robosc.OutgoingService() | robosc.OutgoingAction() if (
+                instance is not None
+            ):
                 return self._running(item, instance)
         if not isinstance(item, robosc.Constant | robosc.Condition):
             raise NotReadError(item)

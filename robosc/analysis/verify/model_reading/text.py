@@ -149,8 +149,10 @@ class _TextReading:
 
     def run(self) -> Machine:
         for instance in self.names:
-            transitions = [*instance.behaviour(robosc.ResultTransition)]
-            transitions += (transition for state in instance.behaviour(robosc.State) for transition in state.transitions)
+            transitions: list[robosc.Transition] = [*instance.behaviour(robosc.ResultTransition)]
+            transitions += (
+                transition for state in instance.behaviour(robosc.State) for transition in state.transitions
+            )
             for transition in transitions:
                 if isinstance(transition, robosc.ResultTransition):
                     named = self.of(transition.communicationType, transition.resultType, instance.place)
@@ -187,7 +189,9 @@ class _TextReading:
             comes = communication.direction == robosc.MessageDirection.outgoing
             steps = {"u_response" if comes else "c_trigger": {"ready": "ready"}}
         else:
-            steps = {name: step for name, step in _PHASES[plant.kind].items() if self.is_possible(EventName(plant, name))}
+            steps = {
+                name: step for name, step in _PHASES[plant.kind].items() if self.is_possible(EventName(plant, name))
+            }
         places = dict.fromkeys(name for step in steps.values() for pair in step.items() for name in pair)
         if "canceling" in places and "u_cancel" not in steps and plant.kind in SERVERS:
             del places["canceling"]  # no client cancels a goal
@@ -233,9 +237,7 @@ class _TextReading:
         self.machine.events[EventName(plant, name)] = event
         return event
 
-    def of(
-        self, reference: robosc.CommunicationReference, named: robosc.ResultType, place: Environment
-    ) -> EventName:
+    def of(self, reference: robosc.CommunicationReference, named: robosc.ResultType, place: Environment) -> EventName:
         """Return the event that a transition names."""
         plant = _plant(*self.names.port(reference, place))
         if plant.kind not in SERVERS:
@@ -311,7 +313,9 @@ class _TextReading:
             self.machine.events[name].participants.append(self.reaction(name, ordered, instance, ignored))
 
     def timer(self, transition: robosc.TimedTransition, where: str | None, instance: Instance) -> Timer:
-        without = frozenset(self.of(message, robosc.ResultType.response, instance.place) for message in transition.without)
+        without = frozenset(
+            self.of(message, robosc.ResultType.response, instance.place) for message in transition.without
+        )
         environment, unit = instance.place, _UNITS[transition.unit]
         parameter = self.names.parameter(transition.duration, environment)
         if parameter is not None:
