@@ -53,3 +53,24 @@ def test_the_standard_library_is_what_the_page_says() -> None:
         for kind in ("library", "component", "message"):
             for name in re.findall(rf"^ *{kind} (\w+)", text, re.MULTILINE):
                 assert f"`{name}`" in page
+
+
+def test_the_snippets_on_serving_make_a_model(tmp_path: Path) -> None:
+    page = (DOCS / "language-serving.md").read_text(encoding="utf-8")
+    parts = re.findall(r"^```robosc\n(.*?)^```$", page, flags=re.MULTILINE | re.DOTALL)
+    path = tmp_path / "desk.rscd"
+    path.write_text("robot Desk {\n" + "\n".join(parts) + "}\n")
+    robot = robosc.load(path)
+    assert robosc.check(robot) == []
+    model = robosc.to_sct(robot)
+    robosc.synthesize(model)
+    commands = [f"{plant.name}.{event.name}" for plant in model.plants for event in plant.events if event.controllable]
+    assert commands == [
+        "service_start.c_response",
+        "action_inspect.c_feedback",
+        "action_inspect.c_response",
+        "action_inspect.c_canceled",
+        "data_start.c_d1",
+        "data_inspect.c_d1",
+        "data_inspect_feedback.c_d1",
+    ]

@@ -23,6 +23,8 @@ RULES = {
     "unrestricted-call": Severity.WARNING,
     "unreachable-state": Severity.WARNING,
     "assumption-unused": Severity.WARNING,
+    "goal-never-ends": Severity.WARNING,
+    "goal-rejected": Severity.WARNING,
 }
 
 

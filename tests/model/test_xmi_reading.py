@@ -77,7 +77,10 @@ def test_files_are_named_as_the_user_names_them(folder: Path, monkeypatch: pytes
     monkeypatch.chdir(folder.parent)
     [finding] = findings(Path(folder.name) / "Warehouse.rosgraph.xmi")
     assert finding.file == f"{folder.name}/Warehouse.sct.xmi"
-    assert finding.hint == "one of message, service, action, behaviour, data, requirement, assumption, serviceServer, actionServer"
+    assert (
+        finding.hint
+        == "one of message, service, action, behaviour, data, requirement, assumption, serviceServer, actionServer"
+    )
 
 
 def test_what_emf_leaves_out_has_its_default(write: Any) -> None:

@@ -8,7 +8,7 @@ from robosc.language.checks.commands import events_of
 from robosc.language.checks.libraries import instances
 from robosc.language.checks.rule import Finding, rule
 from robosc.model import robosc as rsc
-from robosc.model.semantics.communication import SERVED, port_event_of, provided_event, sending_event
+from robosc.model.semantics.communication import ENDING_ANSWERS, SERVED, port_event_of, provided_event, sending_event
 from robosc.model.semantics.naming import escape_keyword
 
 if TYPE_CHECKING:
@@ -32,7 +32,10 @@ def unnamed_answer(base: rsc.Base) -> Iterator[Finding]:
         port = known.port(reference, within)
         if port is None or row is None or not isinstance(port.communication, SERVED) or element in reported:
             continue
-        if row not in known.possible_events(port):
+        possible = known.possible_events(port)
+        # Every end of a goal has the data of the response.
+        is_data = isinstance(element.eContainer(), rsc.ProvideStatement) and row.kind in ENDING_ANSWERS
+        if row not in possible and not (is_data and any(other.kind in ENDING_ANSWERS for other in possible)):
             reported.add(element)
             named = f"{row.name} {row.preposition} {escape_keyword(port.communication.name)}"
             yield Finding(
