@@ -32,7 +32,7 @@ def plain(value):
     if hasattr(value, "__slots__"):
         names = (slot.lstrip("_") for slot in value.__slots__ if slot != "_check_fields")
         return {name: plain(getattr(value, name)) for name in names}
-    if isinstance(value, (list, array)):
+    if isinstance(value, (list, tuple, array)):
         return [plain(element) for element in value]
     if isinstance(value, bytes):  # the Python value of a ROS 2 byte
         return int.from_bytes(value, "little")

@@ -183,7 +183,12 @@ class Peer:
         """Call a service of the node; return the number of the call. A failed call has null as its data."""
         number = len(self.sent)
         self.sent.append(None)
-        self.ros.call(name, kind, fields, lambda response: self.say(answered=number, data=plain(response)))
+
+
+        def answered(response):
+            self.say(answered=number, data=None if response is None else plain(response))
+
+        self.ros.call(name, kind, fields, answered)
         return number
 
     def start(self, name, kind, fields):

@@ -128,7 +128,7 @@ class Controller(EventHandler):
             starter = ActionClient(port, event_loop, action, times, answers)
             self._add_sender(action, action.identifier, action.request, Section.GOAL, starter.start)
             self._starters[action] = self.goals[action.cancel] = starter
-        #: What the controller serves.
+        #: Servers of the controller, by their elements in the graph.
         self.services = {served: self._service_server(served) for served in graph.serviceServers}
         self.actions = {served: self._action_server(served) for served in graph.actionServers}
 

@@ -71,9 +71,9 @@ class ServiceServer:
 class GoalEvents:
     """Decisions and events of the controller for the goals of one action.
 
-    `permits` returns whether a goal can be accepted now. `take` performs the event of an accepted goal, and returns
-    whether it has happened. `may_cancel` returns whether a client may cancel the goal now, and `cancel` performs that
-    event. `default` returns a result with the defaults of ROS.
+    `permits` returns whether a goal can be accepted now: none is open, and its event can happen. `take` performs the
+    event of an accepted goal, and returns whether it has happened. `may_cancel` returns whether a client may cancel the
+    goal now, and `cancel` performs that event. `default` returns a result with the defaults of ROS.
     """
 
     permits: Callable[[Message], bool]
@@ -96,7 +96,7 @@ class ActionServer:
 
     def accepts(self, goal: Message) -> bool:
         """Return whether to accept a goal now."""
-        return self._goal is None and self._events.permits(goal)
+        return self._events.permits(goal)
 
     def begin(self, goal: ServedGoal, data: Message) -> None:
         """Perform the event of an accepted goal. Precondition: `accepts` has just returned True for its data."""

@@ -33,6 +33,9 @@ class ActionServer final
     server_.start();
   }
 
+  ActionServer(const ActionServer&) = delete;
+  ActionServer& operator=(const ActionServer&) = delete;
+
   ~ActionServer() override { this->leave(); }  // NOLINT(bugprone-exception-escape): locks of boost, should they fail
 
  private:

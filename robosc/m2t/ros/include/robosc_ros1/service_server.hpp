@@ -57,6 +57,9 @@ class ServiceServer final : public CallServer<std::shared_ptr<WaitingCall<typena
     }
   }
 
+  ServiceServer(const ServiceServer&) = delete;
+  ServiceServer& operator=(const ServiceServer&) = delete;
+
   ~ServiceServer() override {  // NOLINT(bugprone-exception-escape): locks, should they fail
     this->leave();
     {
