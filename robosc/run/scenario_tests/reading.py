@@ -421,7 +421,11 @@ class _Reader:
                 self._fault(
                     expected, "this is not a single condition", "close each bracket, and write a comment after `//`"
                 )
-        elif match["taken"]:
+        else:
+            yield from self._about_event(match, line, within, expected)
+
+    def _about_event(self, match: re.Match[str], line: Line, within: float | None, expected: Line) -> Iterator[Line]:
+        if match["taken"]:
             yield from self._taken(match, line, within, expected)
         elif match["sent"] or match["not_sent"]:
             yield from self._sent(match, line, within, expected)

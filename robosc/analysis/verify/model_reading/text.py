@@ -148,15 +148,7 @@ class _TextReading:
         self.statements: dict[Plant, Sequence[tuple[robosc.ProvideStatement, Environment]]] = {}
 
     def run(self) -> Machine:
-        for instance in self.names:
-            transitions: list[robosc.Transition] = [*instance.behaviour(robosc.ResultTransition)]
-            transitions += (
-                transition for state in instance.behaviour(robosc.State) for transition in state.transitions
-            )
-            for transition in transitions:
-                if isinstance(transition, robosc.ResultTransition):
-                    named = self.of(transition.communicationType, transition.resultType, instance.place)
-                    self.named_events.add(named)
+        self.collect_named_events()
         for instance in self.names:
             for communication in instance.of(robosc.CommunicationType):
                 self.communication(instance, communication)
@@ -177,6 +169,17 @@ class _TextReading:
         for plant, statements in self.statements.items():
             self.machine.provided[plant] = [self.provided_constant(*statement) for statement in statements]
         return self.machine
+
+    def collect_named_events(self) -> None:
+        for instance in self.names:
+            transitions: list[robosc.Transition] = [*instance.behaviour(robosc.ResultTransition)]
+            transitions += (
+                transition for state in instance.behaviour(robosc.State) for transition in state.transitions
+            )
+            for transition in transitions:
+                if isinstance(transition, robosc.ResultTransition):
+                    named = self.of(transition.communicationType, transition.resultType, instance.place)
+                    self.named_events.add(named)
 
     # Communication
 
