@@ -64,13 +64,15 @@ def test_the_snippets_on_serving_make_a_model(tmp_path: Path) -> None:
     assert robosc.check(robot) == []
     model = robosc.to_sct(robot)
     robosc.synthesize(model)
-    commands = [f"{plant.name}.{event.name}" for plant in model.plants for event in plant.events if event.controllable]
+    commands = [
+        f"{plant.name}.{event.name}"
+        for plant in model.plants
+        for event in plant.events
+        if event.controllable and not plant.name.startswith("data_")
+    ]
     assert commands == [
         "service_start.c_response",
         "action_inspect.c_feedback",
         "action_inspect.c_response",
         "action_inspect.c_canceled",
-        "data_start.c_d1",
-        "data_inspect.c_d1",
-        "data_inspect_feedback.c_d1",
     ]

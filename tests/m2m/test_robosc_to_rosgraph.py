@@ -10,6 +10,7 @@ from robosc.m2m import robosc_to_rosgraph, robosc_to_sct
 from robosc.model import expression as ex
 from robosc.model import rosgraph, sct
 from robosc.model.semantics.printing import RobotPrinter
+from robosc.model.semantics.roles import Roles
 
 SCANNER = """
 robot R {
@@ -337,3 +338,59 @@ def test_each_value_of_a_choice_has_the_conditions_on_its_way(robot: Callable) -
         (0.3, "!(Lidar.f = near) and Lidar.b"),
         (0.4, "!(Lidar.f = near) and !Lidar.b"),
     ]
+
+
+SERVED = """
+robot Served {
+  interface ordering use AddTwoInts from example_interfaces
+  interface inspection use Fibonacci from example_interfaces
+  datatype object Order { a: integer(0..9) b: integer }
+  datatype object Answer { sum: integer }
+  datatype object Report { sequence: array(integer) }
+  component Desk {
+    outgoing service start with identifier: "/start", request: Order, response: Answer links ordering
+    outgoing service ask with request: none, response: none
+    outgoing action inspect with identifier: "/inspect", request: none, response: Report, feedback: Report
+      links inspection
+    behaviour {
+      variable last: integer
+      initial marked state idle {
+        on request from start if value.a > 3 do last := value.b
+        on response to start
+        on request from inspect goto busy
+      }
+      marked state busy {
+        on feedback to inspect
+        on error to inspect goto idle
+        on canceled to inspect goto idle
+      }
+    }
+    provide start with { sum: last + 1 }
+    provide inspect with { sequence: [last] } if busy
+    provide feedback to inspect with { sequence: [7] }
+  }
+}
+"""
+
+
+def test_servers(robot: Callable) -> None:
+    model, trace = robosc_to_sct.transform(robot(SERVED))
+    graph = robosc_to_rosgraph.transform(trace)
+    start, ask = graph.serviceServers
+    assert (start.identifier, start.interface.type, start.request.event.name) == ("/start", "AddTwoInts", "u_request")
+    assert [assignment.input.name for assignment in start.request.inputs] == ["i_request_a"]
+    assert start.response is not None
+    assert [alternative.location.name for alternative in start.response.alternatives] == ["d1"]
+    assert (ask.identifier, ask.interface.package, ask.response) == ("ask", "std_srvs", None)
+    (inspect,) = graph.actionServers
+    assert (inspect.response, inspect.cancel.name) == (None, "u_cancel")
+    sendings = {word: getattr(inspect, word) for word in ("feedback", "error", "canceled")}
+    plants = {word: sending.alternatives[0].location.eContainer().name for word, sending in sendings.items()}
+    assert plants == {"feedback": "data_inspect_feedback", "error": "data_inspect", "canceled": "data_inspect"}
+    chosen = {event.name: plant.name for event, plant in Roles(model).data_plants.items()}
+    assert chosen == {
+        "c_response": "data_start",
+        "c_feedback": "data_inspect_feedback",
+        "c_error": "data_inspect",
+        "c_canceled": "data_inspect",
+    }

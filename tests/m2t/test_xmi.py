@@ -64,3 +64,47 @@ def test_loaded_models_give_the_same_files(tmp_path: Path) -> None:
     graph = load(tmp_path / "Walker.rosgraph.xmi")
     again = Models(graph.model, graph, load(tmp_path / "Walker.robosc.xmi"))
     assert xmi.generate(again, Configuration()) == texts
+
+
+SERVED = """
+robot Walker {
+  interface ordering use AddTwoInts from example_interfaces
+  interface inspection use Fibonacci from example_interfaces
+  datatype object Order { a: integer(0..9) }
+  datatype object Answer { sum: integer }
+  component Desk {
+    outgoing service start with request: Order, response: Answer links ordering
+    outgoing action inspect with request: none, response: none, feedback: Progress links inspection
+    behaviour {
+      initial marked state idle {
+        on request from start
+        on response to start
+        on request from inspect goto busy
+      }
+      marked state busy {
+        on feedback to inspect
+        on canceled to inspect goto idle
+        on response to inspect goto idle
+      }
+    }
+  }
+  datatype object Progress { sequence: array(integer) }
+  provide start with { sum: 3 }
+  provide feedback to inspect with { sequence: [4] }
+}
+"""
+
+
+def test_served_communications_are_saved(tmp_path: Path) -> None:
+    (tmp_path / "robot.rscd").write_text(SERVED)
+    reading = read(tmp_path / "robot.rscd")
+    assert reading.findings == []
+    model, trace = robosc_to_sct.transform(reading.base)
+    texts = xmi.generate(Models(model, robosc_to_rosgraph.transform(trace), reading.base), Configuration())
+    for name, text in texts.items():
+        (tmp_path / name).write_bytes(text.encode())
+    graph, base = load(tmp_path / "Walker.rosgraph.xmi"), load(tmp_path / "Walker.robosc.xmi")
+    assert xmi.generate(Models(graph.model, graph, base), Configuration()) == texts
+    (start,), (inspect,) = graph.serviceServers, graph.actionServers
+    assert (start.response.name, inspect.error, inspect.cancel.name) == ("start", None, "u_cancel")
+    assert [statement.feedback for statement in base.definitions[-2:]] == [False, True]

@@ -93,6 +93,20 @@ def test_ros_graph() -> None:
     }
 
 
+def test_requests_come_to_servers() -> None:
+    text = """robot R {
+      interface inspection use Fibonacci from example_interfaces
+      component C {
+        outgoing service start with request: none, response: none
+        outgoing action inspect with request: none, response: none, feedback: none links inspection
+      }
+    }"""
+    (group,) = ros_graph(robosc.to_rosgraph(robosc.load(text=text))).groups
+    names = {node.key: node.title for node in group.nodes}
+    ways = {(names[arrow.source], names[arrow.target], arrow.both) for arrow in group.arrows}
+    assert ways == {("start", "r_controller", False), ("inspect", "r_controller", False)}
+
+
 def test_plants() -> None:
     groups = {group.title: group for group in graph("plants").groups}
     crane, data = groups["component_Crane"], groups["data_swing"]
