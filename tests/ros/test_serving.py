@@ -15,7 +15,7 @@ from tests.ros.workspaces import SERVING, Workspace, middleware
 
 if TYPE_CHECKING:
     import subprocess
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
     from contextlib import AbstractContextManager
     from pathlib import Path
 
@@ -67,9 +67,10 @@ class Clerk:
         """Return the response to a call."""
         return self.world.wait("answered", value=number)["data"]
 
-    def tour(self, loops: int) -> int:
+    def tour(self, loops: int, poses: Sequence[dict[str, Any]] = ({},)) -> int:
         """Send a goal to `/tour`; return its number."""
-        number: int = self.world.do("start", name="/tour", kind=TOUR, fields={"number_of_loops": loops})
+        fields = {"number_of_loops": loops, "poses": poses}
+        number: int = self.world.do("start", name="/tour", kind=TOUR, fields=fields)
         return number
 
     def accepted(self, number: int) -> bool:
@@ -188,6 +189,10 @@ def feedback(served: Clerk, goal: int) -> list[int]:
 def test_a_goal_is_rejected_because_of_its_data_or_the_state(served: Clerk) -> None:
     since = len(served.events())
     assert not served.accepted(served.tour(LONG))
+    assert not served.accepted(served.tour(1, poses=[]))
+    served.processes.wait_until(
+        lambda: "/tour: there is no element 0 in an array of 0" in served.output(), "the node reports the data"
+    )
     served.tell("close")
     assert not served.accepted(served.tour(1))
     served.tell("open")

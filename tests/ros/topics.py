@@ -2,6 +2,7 @@
 # ruff: noqa: PLC0415  # only one of the two is installed
 
 import importlib
+import re
 import time
 from array import array
 
@@ -17,11 +18,22 @@ def type_of(name):
     return getattr(importlib.import_module(f"{package}.msg"), kind)
 
 
+def element_of(message, name):
+    """Return a new element of a message's array of objects."""
+    if hasattr(message, "_slot_types"):
+        kind = dict(zip(message.__slots__, message._slot_types, strict=True))[name]
+    else:
+        kind = message.get_fields_and_field_types()[name]
+    return type_of(re.search(r"\w+/\w+", kind)[0])()
+
+
 def fill(message, fields):
-    """Set fields of a message from nested dicts."""
+    """Set fields of a message from nested dicts and lists."""
     for name, value in fields.items():
         if isinstance(value, dict):
             fill(getattr(message, name), value)
+        elif isinstance(value, list) and any(isinstance(element, dict) for element in value):
+            setattr(message, name, [fill(element_of(message, name), element) for element in value])
         else:
             setattr(message, name, value)
     return message

@@ -139,16 +139,19 @@ class Ros:
         if name not in self.clients:
             self.clients[name] = self.node.create_client(service, name)
             self.clients[name].wait_for_service()
-        answer = self.clients[name].call_async(fill(service.Request(), fields))
-        answer.add_done_callback(lambda future: answered(future.result()))
-        self.executor.wake()
+        request = fill(service.Request(), fields)
+
+        def send():
+            self.clients[name].call_async(request).add_done_callback(lambda future: answered(future.result()))
+
+        self._in_executor(send)
 
     def start(self, name, kind, fields, accepted, progress, ended, cancelled):
         action = _find(kind, "action")
         if name not in self.clients:
             self.clients[name] = ActionClient(self.node, action, name)
             self.clients[name].wait_for_server()
-        sent = _Sent(cancelled)
+        sent = _Sent(self, cancelled)
 
         def decided(future):
             sent.handle = future.result()
@@ -159,23 +162,34 @@ class Ros:
         def finished(future):
             ended(ENDS[future.result().status], future.result().result)
 
-        answer = self.clients[name].send_goal_async(
-            fill(action.Goal(), fields), feedback_callback=lambda message: progress(message.feedback)
-        )
-        answer.add_done_callback(decided)
-        self.executor.wake()
+        goal = fill(action.Goal(), fields)
+
+        def send():
+            answer = self.clients[name].send_goal_async(goal, lambda message: progress(message.feedback))
+            answer.add_done_callback(decided)
+
+        self._in_executor(send)
         return sent
+
+    def _in_executor(self, send):
+        """Send from the thread that receives: rclpy loses an answer that arrives before its request is recorded."""
+        self.executor.create_task(send)
+        self.executor.wake()
 
 
 class _Sent:
     """A goal that a client sent to the node under test."""
 
-    def __init__(self, cancelled):
+    def __init__(self, ros, cancelled):
+        self.ros = ros
         self.cancelled = cancelled
 
     def cancel(self):
-        answer = self.handle.cancel_goal_async()
-        answer.add_done_callback(lambda future: self.cancelled(bool(future.result().goals_canceling)))
+        def send():
+            answer = self.handle.cancel_goal_async()
+            answer.add_done_callback(lambda future: self.cancelled(bool(future.result().goals_canceling)))
+
+        self.ros._in_executor(send)
 
 
 class _Server(ActionServer):

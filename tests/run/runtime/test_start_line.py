@@ -10,6 +10,7 @@ robot Lamp {
   component Light {
     service bright with identifier: "/uv/set", request: std_srvs/SetBool, response: none
     service dark with identifier: "/uv/set", request: std_srvs/SetBool, response: none
+    outgoing service ring with identifier: "/ring", request: none, response: none
   }
 }
 """
@@ -17,4 +18,4 @@ robot Lamp {
 
 def test_a_name_stands_there_once() -> None:
     graph = robosc.to_rosgraph(robosc.load(text=TEXT))
-    assert "calls /uv/set." in _started("lamp_controller", graph, shows=False)
+    assert "calls /uv/set; serves /ring." in _started("lamp_controller", graph, shows=False)
