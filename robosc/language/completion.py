@@ -160,6 +160,8 @@ def _words(block: Block | None, expected: Iterable[str]) -> Iterator[Proposal]:
             yield from map(Proposal, (*FUNCTIONS, TEXT_FUNCTION))
         elif word == "Each":
             yield Proposal("each")
+        elif word == "FeedbackTo":
+            yield Proposal("feedback")
     if "end" in expected and block is not None and block.level is not None:
         yield from (Proposal(word, starts=True) for word in sorted(block.level.starters))
 

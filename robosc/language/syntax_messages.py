@@ -134,6 +134,7 @@ _RULES = {
     "LoneInteger": "a whole number",
     "SignedInteger": "a whole number",
     "Double": "a number",
+    "FeedbackTo": "`feedback`",
 }
 #: Phrases that replace several expected words in a message. Each has the rule that the words begin, and its core: words
 #: that the grammar expects only together. The phrase is used if the whole core is expected.

@@ -25,7 +25,7 @@ WORDS = {
     "String",
     "LoneString",
 }
-WORDS |= {"Boolean", "Comment", "Each"}
+WORDS |= {"Boolean", "Comment", "Each", "FeedbackTo"}
 ENUMERATIONS = ["MessageDirection", "ResultType", "Quantifier", "InvariantKind", "TimeUnit"]
 #: Words that are keywords in one place only, and names elsewhere.
 UNRESERVED = {

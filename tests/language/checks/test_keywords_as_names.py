@@ -111,7 +111,7 @@ TEXTS = {
 }
 #: Words with a meaning of their own in that place: the text is then another one, with other findings.
 MEANING = {
-    "incoming message": {"and", "or", "if", "error", "to"},
+    "incoming message": {"and", "or", "if", "error"},
     "variable": {"if", "value", "error"},
     "enum value": {"true", "false", "value", "if", "error"},
 }

@@ -129,6 +129,16 @@ CASES = [
     (CHOICE + "then { |", {"forward", "turn"}, {"home"}),
     (CHOICE + "then { forward: 1.0 } else { |", {"forward", "turn"}, {"home"}),
     (behind("robot Cart {\n", "  // |\n"), set(), {"component"}),
+    (behind("robot Cart {\n", "  provide |\n"), {"feedback"}, set()),
+    (behind("robot Cart {\n", "  component X { outgoing | }\n"), {"message", "service", "action"}, set()),
+    (
+        behind(
+            "robot Cart {\n",
+            "  component X { outgoing service start with request: none, response: none }\n  requirement |\n",
+        ),
+        {"start"},
+        set(),
+    ),
 ]
 
 
