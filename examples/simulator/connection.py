@@ -6,7 +6,7 @@ import queue
 import time
 from abc import ABC, abstractmethod
 
-from .simulation import Answer, GoalNews
+from .simulation import Answer, GoalNews, Order
 
 #: The initial time on the clocks of ROS: a clock at 0 counts as none.
 EPOCH = 1.0
@@ -29,9 +29,10 @@ class Connection(ABC):
         self._echoes = dict.fromkeys(set(simulation.says) & set(simulation.hears), 0)
 
     def waits_for(self):
-        """Return the topics without a listener, apart from the simulation's own devices."""
+        """Return the topics without a listener, apart from the simulation's own devices, and the missing servers."""
         needed = (say for say in self.simulation.says if say not in self.simulation.scenario.unheard)
-        return [topic for topic in needed if self.listeners(topic) <= (topic in self._echoes)]
+        topics = [topic for topic in needed if self.listeners(topic) <= (topic in self._echoes)]
+        return topics + [name for name in (*self.simulation.calls, *self.simulation.goals) if not self.serves(name)]
 
     def send(self, item):
         """Send a message, an answer or news of a goal."""
@@ -40,6 +41,9 @@ class Connection(ABC):
             return
         if isinstance(item, GoalNews):
             self.tell(item)
+            return
+        if isinstance(item, Order):
+            self.order(item.name, item.data, lambda answer: self.later(lambda: self._answered(item.name, answer)))
             return
         if item.topic in self._echoes:
             self._echoes[item.topic] += 1
@@ -89,6 +93,10 @@ class Connection(ABC):
             self._lives()
             self.simulation.receive(topic, data)
 
+    def _answered(self, name, data):
+        self._lives()
+        self.simulation.answered(name, data)
+
     def _lives(self):
         self.answered = True
         self.last_heard = self.simulation.time
@@ -96,6 +104,14 @@ class Connection(ABC):
     @abstractmethod
     def listeners(self, topic):
         """Return the number of listeners of a topic."""
+
+    @abstractmethod
+    def serves(self, name):
+        """Return whether the controller serves a service or an action."""
+
+    @abstractmethod
+    def order(self, name, data, answered):
+        """Call a service of the controller, or send a goal to one of its actions. Any thread calls `answered`."""
 
     @abstractmethod
     def clock(self, seconds):

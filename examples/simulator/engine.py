@@ -22,7 +22,7 @@ from robosc.run.runtime.core.port import CancelAnswer, GoalOutcome
 from robosc.run.runtime.core.settings import SafeMessages, Settings
 
 from .playing import tell
-from .simulation import Answer, GoalNews
+from .simulation import Answer, GoalNews, Order
 
 EXAMPLES = Path(__file__).resolve().parents[1]
 OUTCOMES = {"succeeded": GoalOutcome.SUCCEEDED, "canceled": GoalOutcome.CANCELED, "aborted": GoalOutcome.ABORTED}
@@ -95,15 +95,32 @@ class Node:
         }
         self._controller = kind(graph, Settings(parameters, configuration), self._port, self._event_loop)
         self._subscriptions = {subscription.topic: subscription for subscription in graph.subscriptions}
+        self._simulation = simulation
+        self._services = {server.identifier: server for server in graph.serviceServers}
+        self._actions = {server.identifier: server for server in graph.actionServers}
         self._controller.start()
 
     def take(self, item):
         """Handle a message, an answer or news of a goal."""
         if isinstance(item, (Answer, GoalNews)):
             self._port.take(item)
+        elif isinstance(item, Order):
+            self._event_loop.post(lambda: self._order(item))
         elif item.topic in self._subscriptions:
             subscription, message = self._subscriptions[item.topic], Received(item.data)
             self._event_loop.post(lambda: self._controller.receive(subscription, message))
+
+    def _order(self, order):
+        """Deliver a call or a goal."""
+        client, data = Client(self._simulation, order.name), Received(order.data)
+        if order.name in self._services:
+            self._controller.services[self._services[order.name]].call(data, client)
+            return
+        server = self._controller.actions[self._actions[order.name]]
+        if server.accepts(data):
+            server.begin(client, data)
+        else:
+            self._simulation.answered(order.name, "rejected")
 
     def work(self):
         """Run all functions that are due now."""
@@ -254,6 +271,27 @@ class WorldPort:
         """Do nothing: there are no listeners."""
 
     warn = error = info
+
+
+class Client:
+    """A client of the controller: its call, or its goal."""
+
+    is_answered = True
+
+    def __init__(self, simulation, name):
+        self._simulation, self._name = simulation, name
+
+    def give(self, response=None):
+        """Take the response of a service."""
+        self._simulation.answered(self._name, {} if response is None else _plain(response))
+
+    def feed_back(self, feedback):
+        """Ignore feedback."""
+
+    def end(self, outcome, result):
+        """Take the end of a goal."""
+        del result
+        self._simulation.answered(self._name, str(outcome))
 
 
 class Goal:

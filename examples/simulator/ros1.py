@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import importlib
+import threading
 
 import actionlib
 import rospy
+from actionlib_msgs.msg import GoalStatus
 from rosgraph_msgs.msg import Clock
 from std_msgs.msg import String
 
 from .connection import EPOCH, Connection, UnknownTypeError
+
+#: Ends of goals.
+ENDS = {GoalStatus.SUCCEEDED: "succeeded", GoalStatus.ABORTED: "aborted", GoalStatus.PREEMPTED: "canceled"}
 
 
 class Ros1(Connection):
@@ -32,6 +37,10 @@ class Ros1(Connection):
             rospy.Subscriber(simulation.scenario.alive, String, lambda _: self.alive(), queue_size=100)
         for service, kind in simulation.answers.items():
             rospy.Service(service, _class(kind, "srv"), self._answerer(service, _class(kind + "Response", "srv")))
+        self._starters = {
+            name: actionlib.ActionClient(name, _class(kind + "Action")) for name, kind in simulation.goals.items()
+        }
+        self._handles = []
         self._goals = {}
         self._servers = []
         self._feedback = {}
@@ -48,6 +57,36 @@ class Ros1(Connection):
     def listeners(self, topic):
         """Return the number of listeners of a topic."""
         return self._publishers[topic].get_num_connections() if topic in self._publishers else 0
+
+    def serves(self, name):
+        """Return whether the controller serves a service or an action."""
+        if name in self._starters:
+            starter = self._starters[name]
+            return starter.pub_goal.get_num_connections() > 0 and starter.result_sub.get_num_connections() > 0
+        try:
+            rospy.wait_for_service(name, 0.05)
+        except rospy.ROSException:
+            return False
+        return True
+
+    def order(self, name, data, answered):
+        """Call a service of the controller, or send a goal to one of its actions."""
+        if name in self._starters:
+            goal = _filled(_class(self.simulation.goals[name] + "Goal")(), data)
+
+            def changed(handle):
+                if handle.get_comm_state() == actionlib.CommState.DONE:
+                    answered(ENDS.get(handle.get_goal_status(), "rejected"))
+
+            self._handles.append(self._starters[name].send_goal(goal, changed))
+            return
+        kind = self.simulation.calls[name]
+
+        def call():
+            request = _filled(_class(kind + "Request", "srv")(), data)
+            answered(_plain(rospy.ServiceProxy(name, _class(kind, "srv"))(request)))
+
+        threading.Thread(target=call, daemon=True).start()
 
     def clock(self, seconds):
         """Publish the time."""

@@ -7,8 +7,9 @@ import threading
 from contextlib import suppress
 
 import rclpy
+from action_msgs.msg import GoalStatus
 from builtin_interfaces.msg import Time
-from rclpy.action import ActionServer, CancelResponse, GoalResponse
+from rclpy.action import ActionClient, ActionServer, CancelResponse, GoalResponse
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.qos import qos_profile_sensor_data
@@ -16,6 +17,13 @@ from rosgraph_msgs.msg import Clock
 from std_msgs.msg import String
 
 from .connection import EPOCH, Connection, UnknownTypeError
+
+#: Ends of goals.
+ENDS = {
+    GoalStatus.STATUS_SUCCEEDED: "succeeded",
+    GoalStatus.STATUS_ABORTED: "aborted",
+    GoalStatus.STATUS_CANCELED: "canceled",
+}
 
 
 class Ros2(Connection):
@@ -42,11 +50,41 @@ class Ros2(Connection):
         self._executor = SingleThreadedExecutor()
         self._executor.add_node(self._node)
         self._servers = [self._server(action, kind) for action, kind in simulation.serves.items()]
+        self._callers = {
+            name: self._node.create_client(_class(kind, "srv"), name) for name, kind in simulation.calls.items()
+        }
+        self._starters = {
+            name: ActionClient(self._node, _class(kind, "action"), name) for name, kind in simulation.goals.items()
+        }
         self._answerers = _Answerers(self, simulation.answers) if simulation.answers else None
 
     def listeners(self, topic):
         """Return the number of listeners of a topic."""
         return self._publishers[topic].get_subscription_count() if topic in self._publishers else 0
+
+    def serves(self, name):
+        """Return whether the controller serves a service or an action."""
+        if name in self._callers:
+            return self._callers[name].service_is_ready()
+        return self._starters[name].server_is_ready()
+
+    def order(self, name, data, answered):
+        """Call a service of the controller, or send a goal to one of its actions."""
+        if name in self._callers:
+            caller = self._callers[name]
+            future = caller.call_async(_filled(caller.srv_type.Request(), data))
+            future.add_done_callback(lambda done: answered(_plain(done.result())))
+            return
+
+        def decided(done):
+            handle = done.result()
+            if handle.accepted:
+                handle.get_result_async().add_done_callback(lambda ended: answered(ENDS[ended.result().status]))
+            else:
+                answered("rejected")
+
+        goal = _filled(_class(self.simulation.goals[name], "action").Goal(), data)
+        self._starters[name].send_goal_async(goal).add_done_callback(decided)
 
     def clock(self, seconds):
         """Publish the time."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from .camera import BallDetector, GoalDetector, LineDetector, ObjectDetector, PersonDetector
-from .devices import EMPTY, Odometry, Rotator, Steps, Wheels
+from .devices import EMPTY, TRIGGER, Odometry, Rotator, Steps, Wheels
 from .field import Boom, Driver, Radio, Receiver, Remote
 from .geometry import Disc, Pose, Segment, box, path, turned
 from .navigation import Navigation
@@ -353,6 +353,8 @@ class WarehouseRobot(Scenario):
     """A hall with a dock, a shelf, and between them an aisle in which people walk."""
 
     name = "warehouse_robot"
+    calls = {"/fetch_again": TRIGGER}  # noqa: RUF012
+    goals = {"/fetch": "nav2_msgs/NavigateToPose"}  # noqa: RUF012
     people = {  # noqa: RUF012
         "/order": "geometry_msgs/PoseStamped",
         "/served": EMPTY,
@@ -397,7 +399,8 @@ class WarehouseRobot(Scenario):
         yield from self.at_the_shelf(simulation)
         yield from self.home(simulation)
         yield lambda: docking.docked and battery.charge > 0.5
-        self.order(simulation)
+        simulation.happens("the fleet manager orders the shelf again")
+        simulation.order("/fetch_again", {})
         yield lambda: simulation.world.pose.x > 2.0
         battery.charge = 0.19
         simulation.happens("the battery runs low")
@@ -466,12 +469,12 @@ class WarehouseRobot(Scenario):
         return served and docking.docked and max(map(abs, simulation.world.drive.speed)) < 0.01
 
     def order(self, simulation):
-        """Order the shelf."""
-        simulation.happens("the shelf is ordered")
+        """Order the shelf by a behavior tree."""
+        simulation.happens("a behavior tree orders the shelf")
         x, y = self.shelf
         pose = {"position": {"x": x, "y": y}, "orientation": {"z": 0.0, "w": 1.0}}
         header = {"stamp": simulation.time, "frame_id": "map"}
-        simulation.say("/order", {"header": header, "pose": pose})
+        simulation.order("/fetch", {"pose": {"header": header, "pose": pose}})
 
 
 class Sprayer(Scenario):

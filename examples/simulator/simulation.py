@@ -42,6 +42,14 @@ class Answer:
 
 
 @dataclass(frozen=True)
+class Order:
+    """A call of a service of the controller, or a goal for one of its actions, by its name."""
+
+    name: str
+    data: dict
+
+
+@dataclass(frozen=True)
 class Happening:
     """An event for the picture: its time, the robot's place, and a description."""
 
@@ -81,6 +89,8 @@ class Simulation:
         self.hears = {topic: kind for device in self.devices for topic, kind in device.hears.items()}
         self.answers = {service: kind for device in self.devices for service, kind in device.answers.items()}
         self.serves = {action: kind for device in self.devices for action, kind in device.serves.items()}
+        #: Services and actions of the controller that people and programs call, with their types.
+        self.calls, self.goals = scenario.calls, scenario.goals
         self.ended = False
         self.reached_at = None
         self.happenings = []
@@ -178,6 +188,17 @@ class Simulation:
         self._note(topic, data)
         if topic in self.hears:
             self._deliver(topic, data)
+
+    def order(self, name, data):
+        """Call a service of the controller, or send a goal to one of its actions."""
+        self._said.append(Order(name, data))
+        self._note(name, data)
+
+    def answered(self, name, data):
+        """Handle the answer of the controller to an order: of a service its data, of an action the end of the goal."""
+        self._note(name, data)
+        words = data if isinstance(data, str) else data.get("message", "answered")
+        self.happens(f"{name}: {words}")
 
     def press(self):
         """Press the emergency stop."""

@@ -131,9 +131,14 @@ class Engine:
         return next(reason for reason, holds in self._reasons[event] if not holds(self._cells, ()))
 
     def inputs_blocked_by(self, event: str) -> Blocked | None:
-        """Return the cause that blocks an enabled command because of its present inputs. None if they are allowed."""
+        """Return the cause that blocks an enabled event because of its present inputs. None if they are allowed.
+
+        The event is a command, or a goal of a client, which the plants reject.
+        """
         if self.permits_inputs(event):
             return None
+        if self._by_name[event].role is engine.Role.incoming:
+            return Blocked.PLANT
         reasons = self._by_name[event].reasons
         plants = (reason.condition for reason in reasons if reason.kind == engine.Origin.plants)
         if any(condition is not None and self.condition(condition)() for condition in plants):

@@ -100,6 +100,8 @@ def test_the_page_names_every_topic(name: str) -> None:
             ("incoming", graph.publishers),
             ("service", graph.serviceClients),
             ("action", graph.actionClients),
+            ("outgoing service", graph.serviceServers),
+            ("outgoing action", graph.actionServers),
         ]
         for connection in connections
     ]

@@ -158,6 +158,33 @@ def test_repeated_steps_and_times(run_ros2: Runner, tmp_path: Path) -> None:
     assert (status, "2 passed in" in said) == (0, True), said
 
 
+VISITOR = PROJECT / "tests" / "run" / "scenario_tests" / "visitor.rscd"
+VISITS = """\
+scenario "a client is rejected, sends a goal, and cancels it; calls wait meanwhile"
+  request from visit with {"pose": {"pose": {"position": {"x": 0.5}}}}
+  expect visit rejected
+  request from visit with {"pose": {"pose": {"position": {"x": 1.0}}}}
+  request from light with {"data": true}
+  request from light with {"data": false}
+  stuck
+  expect feedback to visit sent with {"number_of_recoveries": 1}
+  cancel from visit
+  expect canceled to visit sent
+  expect response to light sent 2 times
+  request from visit with {"pose": {"pose": {"position": {"x": 2.0}}}}
+  wait 3 s
+  expect error to visit sent
+  request from visit with {"pose": {"pose": {"position": {"x": 3.0}}}}
+  there
+  expect response to visit sent
+"""
+
+
+def test_clients_of_the_controller(run_ros2: Runner, tmp_path: Path) -> None:
+    status, said = played(run_ros2, run_ros2.ros.python, tmp_path, VISITS, model=VISITOR)
+    assert (status, "1 passed in" in said) == (0, True), said
+
+
 LIFT = """
 robot Shared {
   component Lift {

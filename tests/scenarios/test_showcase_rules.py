@@ -56,6 +56,10 @@ AT_SHELF = [*ARRIVED, sent("leave"), heard("leave", DONE)]
 SERVED = [*AT_SHELF, sent("raise"), heard("raise", DONE), heard("served")]
 HOMEBOUND = [*SERVED, sent("lower"), heard("lower", DONE), sent("enter"), heard("enter", DONE)]
 AT_HOME = [*HOMEBOUND, sent("navigate", HOME), heard("navigate"), sent("leave"), heard("leave", DONE)]
+GOAL, HALT = (heard("fetch", event=event) for event in ("u_request", "u_cancel"))
+CALL = heard("again", event="u_request")
+ORDERED_BY_GOAL = [*IN_DOCK, GOAL]
+SHELVED = [*ORDERED_BY_GOAL, *AT_HOME[len(ORDERED) :], sent("dock"), heard("dock", DONE)]
 TWICE = [sent("dock"), heard("dock", REFUSED), sent("dock", time=6.0), heard("dock", REFUSED, 6.0)]
 THRICE = [*TWICE, sent("dock", time=36.0), heard("dock", event="u_error", time=36.0)]
 STOP, RELEASED, GO_ON = heard("pressed", True), heard("pressed", False), heard("continue")
@@ -74,6 +78,7 @@ WAREHOUSE = [
     ([*UNDER_WAY, heard("charge", {"percentage": 0.19})], sent("navigate", {}), "out with little power"),
     ([*UNDER_WAY, heard("charge", {"percentage": 0.19})], STOP, "the journey has not been cancelled"),
     ([*UNDER_WAY, STOP], STOP, "the journey has not been cancelled"),
+    ([*ORDERED, GOAL], STOP, "a goal was accepted during another mission"),
     (UNDER_WAY, heard("served", time=1.6 + SLACK), "the journey has not been cancelled"),
     ([*FREE, limit(1.0), *scans(1.0)], STOP, "the limit is too high"),
     (UNDER_WAY, sent("navigate", {}), "there is a journey already"),
@@ -115,6 +120,15 @@ WAREHOUSE = [
     ([*AT_HOME, *THRICE], sent("dock", time=100.0), "nobody was asked"),
     ([*AT_HOME, *TWICE[:2]], sent("dock", time=5.9), "it was refused just now"),
     ([*AT_HOME, *TWICE], sent("dock", time=35.9), "it was refused just now"),
+    ([*ORDERED_BY_GOAL, HALT], sent("undock"), "the order is canceled"),
+    (IN_DOCK, sent("again", DONE, event="c_response"), "the answer is wrong"),
+    ([*SHELVED, CALL], sent("again", REFUSED, event="c_response"), "the answer is wrong"),
+    (IN_DOCK, sent("fetch", event="c_response"), "there is no goal"),
+    (ORDERED_BY_GOAL, sent("fetch", event="c_response"), "it is not at home"),
+    ([*ORDERED_BY_GOAL, HALT], sent("fetch", event="c_response"), "nobody was served"),
+    ([*ORDERED_BY_GOAL, HALT], sent("fetch", event="c_error"), "the order was canceled"),
+    (SHELVED, sent("fetch", event="c_error"), "the shelf was served"),
+    (SHELVED, sent("fetch", event="c_canceled"), "the order was not canceled"),
     (FREE, limit(0.5), "that is no limit"),
     ([*FREE, *scans(1.4)], limit(1.0), "too fast for what is near"),
     (FREE, limit(0.3), "nothing is near"),

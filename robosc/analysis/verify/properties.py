@@ -20,8 +20,9 @@ from robosc.analysis.wording import goal_in_words, in_words, join_with_and, name
 from robosc.model import expression as ex
 from robosc.model import sct
 from robosc.model.places import place
+from robosc.model.semantics.communication import ANSWERS, REQUESTS
 from robosc.model.semantics.printing import RobotPrinter
-from robosc.model.semantics.roles import event_name, is_from_cif, plant_of
+from robosc.model.semantics.roles import event_name, is_from_cif, is_goal, plant_of
 from robosc.model.semantics.walks import copy_tree
 from robosc.synthesis.decoding import value
 from robosc.synthesis.encoding import pick, referenced_elements
@@ -40,13 +41,14 @@ if TYPE_CHECKING:
 
 #: Kinds of events that must be possible. An action without a changing restriction is never canceled, and data may
 #: always be available. No user wrote cancels and data events, and some of them are dead on purpose.
-_LIVE = (sct.EventKind.trigger, sct.EventKind.reset, sct.EventKind.tau)
+_LIVE = (sct.EventKind.trigger, sct.EventKind.reset, sct.EventKind.tau, *ANSWERS)
 _INPUTS = (
     sct.EventKind.response,
     sct.EventKind.error,
     sct.EventKind.feedback,
     sct.EventKind.cancel,
     sct.EventKind.canceled,
+    *REQUESTS,
 )
 _NEVER_QUIESCENT = "the control loop never again rests in a state in which all components are marked"
 
@@ -134,7 +136,9 @@ def input_enabledness(system: GuardedSystem) -> Verdict:
     inputs = [
         relation
         for relation in system.relations.values()
-        if relation.event.kind in _INPUTS and plant_of(relation.event) in relation.enabled_by
+        if relation.event.kind in _INPUTS
+        and plant_of(relation.event) in relation.enabled_by
+        and not is_goal(relation.event)  # the controller rejects a goal for which a component is not ready
     ]
     blocking = {
         (relation.event, plant): system.controlled & relation.enabled_by[plant_of(relation.event)] & ~enabled
@@ -269,8 +273,15 @@ def goal_reachable(system: GuardedSystem, claimed: sct.ReachabilityProperty | sc
 
 
 def no_dead_events(system: GuardedSystem) -> Verdict:
-    """Check that each trigger, each silent transition and each reset can happen in some reachable state."""
-    events = [event for event in system.relations if event.kind in _LIVE]
+    """Check that each trigger, answer, silent transition and reset can happen in some reachable state.
+
+    An answer of the controller that no transition names has no edge, and is not meant to happen.
+    """
+    events = [
+        event
+        for event, relation in system.relations.items()
+        if event.kind in _LIVE and (event.kind not in ANSWERS or plant_of(event) in relation.enabled_by)
+    ]
     dead = [event for event in events if not (system.controlled & system.allowed[event]).satisfiable()]
     evidence = f"{system.size}, {format_count(len(events), 'event')}"
     if not dead:

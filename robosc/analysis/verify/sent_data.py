@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.analysis.system import GuardedSystem, format_count
-from robosc.analysis.verify.model_reading.machine import EventName, Plant
+from robosc.analysis.verify.model_reading.machine import EventName, choice_of
 from robosc.analysis.verify.model_reading.names import NotReadError
 from robosc.analysis.verify.model_reading.plants import read_plants
 from robosc.analysis.verify.model_reading.text import UnlikeError, read_text
@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from robosc.synthesis.encoding import Encoding
 
 PROPERTY = "data can comply"
+#: Events with provided data: requests, and answers to clients.
+_SENT = ("c_trigger", "c_response", "c_feedback")
 _UNLIKE = "the plants are not those of the text: see model-translation"
 
 
@@ -94,17 +96,12 @@ class _Examined:
 
 def _constants(text: Machine, plants: Machine) -> Iterator[_Examined]:
     for plant, statements in text.provided.items():
-        command = next(
-            event for name, event in plants.events.items() if name.name == "c_trigger" and _is_sent(name.plant, plant)
-        )
+        sent = (event for name, event in plants.events.items() if name.name in _SENT and choice_of(name) == plant)
+        command = next(sent)
         choices = [plants.events[EventName(plant, f"c_d{number}")].element for number in range(1, len(statements) + 1)]
         for number, provided in enumerate(statements, 1):
             if command.inputs and provided.inputs is not None:
                 yield _Examined(provided, command, choices[:number])
-
-
-def _is_sent(command: Plant, data: Plant) -> bool:
-    return command.kind in ("message", "service", "action") and command.origin == data.origin
 
 
 def _findings(

@@ -21,6 +21,11 @@ if TYPE_CHECKING:
 SILENT = (sct.EventKind.tau, sct.EventKind.reset)
 
 
+def is_goal(event: sct.Event) -> bool:
+    """Return whether an event is the acceptance of a goal for the controller."""
+    return event.kind == sct.EventKind.request and plant_of(event).kind == sct.PlantKind.actionServer
+
+
 def plant_of(event: sct.Event) -> sct.Plant:
     """Return the plant that declares an event."""
     plant = event.eContainer()

@@ -12,7 +12,7 @@ from robosc.model import expression as ex
 from robosc.model import sct
 from robosc.model.semantics.edges import edges_of
 from robosc.model.semantics.evaluation import evaluate
-from robosc.model.semantics.roles import event_name
+from robosc.model.semantics.roles import event_name, is_goal
 from robosc.synthesis.relation import reads_inputs
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ def goals(loop: ControlLoop) -> list[Goal]:
         if plant.kind == sct.PlantKind.behaviour:
             for edge in edges_of(plant):
                 if edge.source is not None:
-                    result += [Goal(edge), *([] if edge.guard is None else [Goal(edge, value=False)])]
+                    result += [Goal(edge), *([] if edge.guard is None or _rejects(edge) else [Goal(edge, value=False)])]
     events = {event_name(event): event for plant in loop.engine.model.plants for event in plant.events}
     for executed in loop.engine.executed.events:
         if executed.role in (*_QUEUED, _SILENT, en.Role.data) and executed not in never_asked:
@@ -61,6 +61,12 @@ def goals(loop: ControlLoop) -> list[Goal]:
             result += [Goal(event), *([Goal(event, value=False)] if executed.guard.terms else [])]
             result += [Goal(event, value=False, cause=cause) for cause in causes(loop.engine.model, event)]
     return result
+
+
+def _rejects(edge: sct.Edge) -> bool:
+    """Return whether the controller rejects a goal of a client unless the transition's condition holds."""
+    alternatives = [other for other in edge.eContainer().edges if other.event is edge.event]
+    return is_goal(edge.event) and edge is alternatives[-1]
 
 
 def causes(model: sct.SupervisoryControlModel, event: sct.Event) -> list[ex.Expression]:

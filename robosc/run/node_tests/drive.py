@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from robosc.language.configuration.parameters import Value, controller_parameters
 from robosc.model.semantics.operators import UnreadableError
-from robosc.run.node_tests.robot import Robot
+from robosc.run.node_tests.robot import PlayedRequest, Robot
 from robosc.run.node_tests.samples import all_incoming
 from robosc.run.node_tests.trace_player import START, Pace
 from robosc.run.runtime.core.controller import Controller
@@ -80,6 +80,22 @@ class DrivenController(Controller):
     def starter(self, action: rosgraph.ActionClient) -> ActionClient:
         """Return the client that sends the goals of an action."""
         return self._starters[action]
+
+    def request(self, service: rosgraph.ServiceServer, data: Any) -> None:
+        """Let a client call a service of the controller."""
+        self.services[service].call(data, PlayedRequest())
+
+    def request_goal(self, action: rosgraph.ActionServer, data: Any) -> bool:
+        """Let a client send a goal to the controller; return whether the controller accepts it."""
+        server = self.actions[action]
+        accepted = server.accepts(data)
+        if accepted:
+            server.begin(PlayedRequest(), data)
+        return accepted
+
+    def request_cancel(self, action: rosgraph.ActionServer) -> bool:
+        """Let a client ask to cancel its goal; return whether the controller accepts that."""
+        return self.actions[action].cancel()
 
     def reads(self, receptions: Sequence[rosgraph.Reception], data: Any) -> bool:
         """Return whether the data of a message that the transitions of the present state need can be read."""

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from robosc.engine import ControlLoop, Hooks
 from robosc.model import sct
 from robosc.model.engine import Role
-from robosc.model.semantics.roles import event_name
+from robosc.model.semantics.roles import event_name, is_goal
 from robosc.run.node_tests.coverage import Goal, Watcher, goals
 from robosc.run.node_tests.guide import Guide, Way
 from robosc.run.node_tests.steps import WAIT, Place, Stimulus, TourStep
@@ -82,8 +82,9 @@ class Plan:
         #: Bit of each goal.
         self.bits = {goal: 1 << number for number, goal in enumerate(self.goals)}
         self._at_rest: dict[tuple[int, ...], int] = {}
-        resets = [event for plant in self.model.plants for event in plant.events if event.kind == sct.EventKind.reset]
-        self._resets = {event_name(event) for event in resets}
+        events = [event for plant in self.model.plants for event in plant.events]
+        self._resets = {event_name(event) for event in events if event.kind == sct.EventKind.reset}
+        self._rejectable = {event_name(event) for event in events if is_goal(event)}
         self._timers = {timer.event.name: number for number, timer in enumerate(self._loop.engine.executed.timers)}
         self._pauses = self._time_passes = False
         self._shown = self._anywhere = 0
@@ -155,6 +156,8 @@ class Plan:
         if stimulus.events:
             if place.pauses or not all(loop.enabled(event) for event, _ in stimulus.events):
                 return None  # nothing comes in during the pause after a failure
+            if any(self._is_rejected(event, inputs) for event, inputs in stimulus.events):
+                return None
             loop.begin()
             for event, inputs in stimulus.events:
                 loop.perform(event, dict(inputs))
@@ -172,6 +175,13 @@ class Plan:
                 loop.expire()
             self._pauses = False
         return self._ended(stimulus)
+
+    def _is_rejected(self, event: str, inputs: Iterable[tuple[str, Value]]) -> bool:
+        """Return whether the controller rejects a goal of a client with these inputs."""
+        if event not in self._rejectable:
+            return False
+        self._loop.engine.set_inputs(event, dict(inputs))
+        return not self._loop.engine.permits_inputs(event)
 
     def _ended(self, stimulus: Stimulus) -> TourStep:
         self._shown |= self._rest()

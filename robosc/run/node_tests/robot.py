@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robosc.base.ros_types import Section
-from robosc.model.semantics.messages import fields_set, limit_expressions, reads
+from robosc.model.semantics.messages import fields_set, limit_expressions, reads, sent_messages
 from robosc.run.node_tests.messages import Definition, Field, Path, data_read, fields_sent, message, new_object
 
 if TYPE_CHECKING:
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
         ComponentStatus,
         Endpoint,
         GoalHandlers,
+        GoalOutcome,
         Message,
         Server,
     )
@@ -52,6 +53,21 @@ class RunningGoal:
         return False
 
 
+class PlayedRequest:
+    """Request or goal of a client of the controller. The log records the answers."""
+
+    is_answered = True
+
+    def give(self, response: Message = None) -> None:
+        """Take the response."""
+
+    def feed_back(self, feedback: Message) -> None:
+        """Take feedback."""
+
+    def end(self, outcome: GoalOutcome, result: Message) -> None:
+        """Take the end of the goal."""
+
+
 class Robot:
     """Port (`robosc.run.runtime.core.port.ControllerPort`) with available servers whose answers the test plays."""
 
@@ -68,13 +84,9 @@ class Robot:
         self.goals: dict[rosgraph.ActionClient, RunningGoal] = {}
         self._distribution = distribution
         self._fields: dict[tuple[rosgraph.Interface, Section], dict[Path, Field]] = {}
-        for publisher in graph.publishers:
-            for sending in publisher.sendings:
-                self._note(publisher.interface, Section.MESSAGE, sending)
-        for service in graph.serviceClients:
-            self._note(service.interface, Section.REQUEST, service.request)
+        for interface, section, sending in sent_messages(graph):
+            self._note(interface, section, sending)
         for action in graph.actionClients:
-            self._note(action.interface, Section.GOAL, action.request)
             results = self._fields.setdefault((action.interface, Section.RESULT), {})
             for end in (action.error, action.canceled):
                 results |= incoming[end.event].fields
@@ -94,7 +106,8 @@ class Robot:
 
     def create(self, interface: rosgraph.Interface, section: Section) -> Message:
         """Return data with the fields that the model sets, or reads after a goal ended without a result."""
-        return message(self._fields[interface, section], {}) if self._fields[interface, section] else None
+        fields = self._fields.get((interface, section))
+        return message(fields, {}) if fields else None
 
     def unset(self, interface: rosgraph.Interface, section: Section, path: Sequence[str]) -> Message:
         """Return an object before anything is stored in it, with the known fields of its type."""

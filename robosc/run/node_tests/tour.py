@@ -225,6 +225,13 @@ class Tour(Drive):
             )
             end = partial(self._end, action, GoalOutcome.CANCELED)
             acts |= self._classes(f"{action.identifier} is canceled", [action.canceled], end)
+        for called in self._graph.serviceServers:
+            acts |= self._classes(f"call of {called.identifier}", [called.request], partial(self._call, called))
+        for served in self._graph.actionServers:
+            acts |= self._classes(f"goal for {served.identifier}", [served.request], partial(self._send_goal, served))
+            if served.cancel is not None:
+                cancel = Stimulus(f"{served.identifier} is to be canceled", ((event_name(served.cancel), ()),))
+                acts[cancel] = partial(self._ask_to_cancel, served)
         return acts
 
     def _classes(
@@ -284,6 +291,19 @@ class Tour(Drive):
             return self._end(client, GoalOutcome.ABORTED, kind, message_class)
         self._robot.goals.pop(client).handlers.ended(GoalOutcome.SUCCEEDED, unreadable[0], "")
         return unreadable[1]
+
+    def _call(self, service: rosgraph.ServiceServer, kind: IncomingKind, message_class: Class) -> dict[str, Any]:
+        data, fields = self._message(kind, message_class)
+        self._controller.request(service, data)
+        return fields
+
+    def _send_goal(self, action: rosgraph.ActionServer, kind: IncomingKind, message_class: Class) -> dict[str, Any]:
+        data, fields = self._message(kind, message_class)
+        self._controller.request_goal(action, data)
+        return fields
+
+    def _ask_to_cancel(self, action: rosgraph.ActionServer) -> None:
+        self._controller.request_cancel(action)
 
     def _message(self, kind: IncomingKind, message_class: Class) -> tuple[Any, dict[str, Any]]:
         """Return the least used sample of a class, as data and as nested fields."""

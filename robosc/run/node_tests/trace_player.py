@@ -210,6 +210,16 @@ def cancelled(action: str) -> str:
     return f"{action} (cancel)"
 
 
+def answered(server: str) -> str:
+    """Return the name under which answers of the node wait: responses, or the ends of goals with their results."""
+    return f"{server} (answer)"
+
+
+def fed_back(action: str) -> str:
+    """Return the name under which feedback of the node waits."""
+    return f"{action} (feedback)"
+
+
 class Incoming:
     """Kind of incoming data: converts lines of a trace into a message with the same meaning for the node."""
 
@@ -366,7 +376,14 @@ class Port:
         servers = [server["name"] for server in connections["services"] + connections["actions"]]
         names = [publisher["topic"] for publisher in connections["publishers"]] + servers
         names += [cancelled(action["name"]) for action in connections["actions"]]
+        names += [answered(server["name"]) for server in self.servers_of_node]
+        names += [fed_back(action["name"]) for action in connections["actionServers"]]
         self.sent: dict[str, queue.Queue[Any]] = {name: queue.Queue() for name in names}
+
+    @property
+    def servers_of_node(self) -> list[dict[str, Any]]:
+        """The services and actions that the node serves."""
+        return [*self.connections["serviceServers"], *self.connections["actionServers"]]
 
     def connect(self) -> None:
         """Wait until the node and all its connections are available. Raises TraceError."""
@@ -396,6 +413,18 @@ class Port:
         """End the goal: `succeeded`, `aborted` or `canceled`."""
         raise NotImplementedError
 
+    def call(self, service: str, fields: dict[str, Any]) -> None:
+        """Call a service of the node. Its response goes to `sent`."""
+        raise NotImplementedError
+
+    def send_goal(self, action: str, fields: dict[str, Any]) -> None:
+        """Send a goal to the node. Its feedback goes to `sent`, and its end as a pair of outcome and result."""
+        raise NotImplementedError
+
+    def cancel(self, action: str) -> None:
+        """Ask the node to cancel its goal."""
+        raise NotImplementedError
+
 
 class Player:
     """Player of traces against one node, which has just started."""
@@ -418,12 +447,29 @@ class Player:
             results = Incoming(action["response"]), Incoming(action["failure"])
             self._answers[action["error"]] = partial(self._abort, action["name"], *results)
             self._add(action["canceled"], partial(port.end, action["name"], "canceled"))
+        for service in connections["serviceServers"]:
+            self._add(service["request"], partial(port.call, service["name"]))
+        for action in connections["actionServers"]:
+            self._add(action["request"], partial(port.send_goal, action["name"]))
+            if action["cancel"]:
+                self._answers[action["cancel"]] = partial(self._cancel, action["name"])
         self._clients = connections["services"] + connections["actions"]
         self._outlets = {
             event: publisher["topic"] for publisher in connections["publishers"] for event in publisher["events"]
         }
         self._outlets.update((client["trigger"], client["name"]) for client in self._clients)
         self._outlets.update((action["cancel"], cancelled(action["name"])) for action in connections["actions"])
+        self._outlets.update(
+            (server["response"], answered(server["name"])) for server in port.servers_of_node if server["response"]
+        )
+        #: Outcome of a goal of the node, by the event that ends it.
+        self._outcomes: dict[str, str] = {}
+        for action in connections["actionServers"]:
+            ends = [("response", "succeeded"), ("error", "aborted"), ("canceled", "canceled")]
+            self._outcomes.update((action[end], outcome) for end, outcome in ends if action[end])
+            self._outlets.update((action[end], answered(action["name"])) for end, _ in ends if action[end])
+            if action["feedback"]:
+                self._outlets[action["feedback"]] = fed_back(action["name"])
         self._sent_until = 0
         #: When an unanswered call has failed, and when a client is ready again after a failure.
         self._due: dict[str, float] = {}
@@ -524,6 +570,9 @@ class Player:
 
         self._answers[event] = answer
         return answer
+
+    def _cancel(self, action: str, _: Line) -> None:
+        self._port.cancel(action)
 
     def _fail(self, service: str, answer: Callable[[Line], None], line: Line) -> None:
         done = self._log.peek()
@@ -644,6 +693,10 @@ class Player:
             message = self._port.sent[self._outlets[line.event]].get(timeout=PATIENCE)
         except queue.Empty:
             raise TraceError(f"line {line.number}: the node logs {line}, but no message arrives") from None
+        if line.event in self._outcomes:
+            outcome, message = message
+            if outcome != self._outcomes[line.event]:
+                raise TraceError(f"line {line.number}: the trace has {line}, but the goal ends as {outcome}")
         if line.data is None:
             return
         value = line.data["value"]

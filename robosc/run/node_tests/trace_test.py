@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from robosc.model import rosgraph
     from robosc.run.node_tests.coverage import Goal
     from robosc.run.node_tests.samples import IncomingKind
-    from robosc.run.runtime.core.port import Client
+    from robosc.run.runtime.core.port import Client, Server
 
 
 def trace_test_of(
@@ -133,6 +133,20 @@ def _connections(
             }
             for action in graph.actionClients
         ],
+        "serviceServers": [
+            {**_server(service, incoming), "response": _event(service.response)} for service in graph.serviceServers
+        ],
+        "actionServers": [
+            {
+                **_server(action, incoming),
+                "cancel": None if action.cancel is None else event_name(action.cancel),
+                "feedback": _event(action.feedback),
+                "response": _event(action.response),
+                "error": _event(action.error),
+                "canceled": _event(action.canceled),
+            }
+            for action in graph.actionServers
+        ],
     }
 
 
@@ -145,6 +159,18 @@ def _client(client: Client, started: Mapping[str, bool | int]) -> dict[str, Any]
         "reset": event_name(client.reset),
         "retry": started["retry_ms"] / 1000,
     }
+
+
+def _server(server: Server, incoming: Mapping[sct.Event, IncomingKind]) -> dict[str, Any]:
+    return {
+        "name": server.identifier,
+        "type": _type(server.interface),
+        "request": describe_incoming(incoming[server.request.event]),
+    }
+
+
+def _event(sending: rosgraph.Sending | None) -> str | None:
+    return None if sending is None else event_name(sending.event)
 
 
 def describe_incoming(kind: IncomingKind) -> dict[str, Any]:

@@ -16,7 +16,7 @@ from robosc.engine import Blocked
 from robosc.model import rosgraph, sct
 from robosc.model.semantics.evaluation import evaluate
 from robosc.model.semantics.failures import possible_reasons
-from robosc.model.semantics.messages import fields_set, holds_objects
+from robosc.model.semantics.messages import fields_set, holds_objects, sent_messages
 from robosc.model.semantics.naming import output_name
 from robosc.model.semantics.roles import event_name, plant_of
 from robosc.run.node_tests.drive import LATENESS, Drive
@@ -40,6 +40,7 @@ from robosc.run.scenario_tests.event_data import (
     with_expected_defaults,
 )
 from robosc.run.scenario_tests.reading import (
+    Acceptance,
     Every,
     Expectation,
     Holds,
@@ -62,7 +63,7 @@ if TYPE_CHECKING:
     from robosc.language.configuration import Configuration
     from robosc.model import expression as ex
     from robosc.run.node_tests.robot import RunningGoal
-    from robosc.run.runtime.core.port import Client
+    from robosc.run.runtime.core.port import Client, Server
     from robosc.run.scenario_tests.operations import Operations
     from robosc.run.scenario_tests.reading import Scenario
 
@@ -128,6 +129,11 @@ class Player(Drive):
             self._acts[action.feedback.event] = partial(self._feed_back, action)
             self._acts[action.response.event] = partial(self._end, action, GoalOutcome.SUCCEEDED)
             self._acts[action.canceled.event] = partial(self._end, action, GoalOutcome.CANCELED)
+        self._served: dict[sct.Event, Server] = {}
+        servers: list[Server] = [*graph.serviceServers, *graph.actionServers]
+        for server in servers:
+            self._served[server.request.event] = server
+            self._acts[server.request.event] = partial(self._request, server)
 
     @property
     def trace(self) -> list[str]:
@@ -153,7 +159,9 @@ class Player(Drive):
         #: The first finding of each line of the scenario.
         self._findings: dict[Line, Diagnostic] = {}
         self._scenario = scenario
-        self._since = self._violations_before = 0
+        self._since = self._violations_before = self._goals_before = 0
+        #: The goals for the controller so far, by the event of each, and whether the controller accepted it.
+        self._goals: list[tuple[sct.Event, bool]] = []
         self._sources = []
         self._rounds: list[_Round] = []
         self._repetitions: dict[sct.Event, _Repetition] = {}
@@ -204,20 +212,23 @@ class Player(Drive):
                 if isinstance(line, Expectation):
                     fault = self._expectation(line)
                     if fault is not None:
-                        self._add(self._with_canceling(fault))
+                        fault = self._with_canceling(fault)
+                        self._add(fault if isinstance(line, Acceptance) else self._with_rejected(fault))
                 else:
                     self._since = len(self._lines.lines)
                     self._violations_before = len(self._controller.violations)
+                    self._goals_before = len(self._goals)
                     self._step(line)
 
     def _play_rounds(self, block: Repeat) -> None:
         since, violations_before = len(self._lines.lines), len(self._controller.violations)
+        goals_before = len(self._goals)
         for number in range(1, block.rounds + 1):
             self._rounds.append(_Round(number, block.rounds))
             self._play(block.steps)
             self._rounds.pop()
         # For the expectations that follow, the block is one step.
-        self._since, self._violations_before = since, violations_before
+        self._since, self._violations_before, self._goals_before = since, violations_before, goals_before
 
     # Steps
 
@@ -269,6 +280,12 @@ class Player(Drive):
     def _come_in(self, line: IncomingEvent) -> None:
         event = find_event(self._graph.model, line.event)
         engine = self._controller.engine
+        if event in self._served:
+            self._bring(event, line, self._acts[event])
+            return
+        if event.kind == sct.EventKind.cancelRequest:
+            self._let_in(lambda: self._ask_to_cancel(event))
+            return
         if not engine.enabled(event_name(event)) and not engine.violated_assumptions(event_name(event)):
             if event.kind == sct.EventKind.canceled and self._clients[event] in self._robot.goals:
                 hint = f"write `error from {self._called(event)} because canceled`"
@@ -332,6 +349,20 @@ class Player(Drive):
 
     def _end(self, action: rosgraph.ActionClient, outcome: GoalOutcome, data: Any) -> None:
         self._robot.goals.pop(action).handlers.ended(outcome, data, "")
+
+    def _request(self, server: Server, data: Any) -> None:
+        """Let a client send a request or a goal. A goal may be rejected, and a request may wait."""
+        if isinstance(server, rosgraph.ServiceServer):
+            self._controller.request(server, data)
+        else:
+            self._goals.append((server.request.event, self._controller.request_goal(server, data)))
+
+    def _ask_to_cancel(self, event: sct.Event) -> None:
+        """Let a client ask to cancel the goal of an action that the controller serves."""
+        [server] = [action for action in self._graph.actionServers if plant_of(action.request.event) is plant_of(event)]
+        if not self._controller.request_cancel(server):
+            message = f"`{self._called(event)}` has no goal to cancel"
+            raise NamingError(message, "a client can cancel an accepted goal once")
 
     # Failures
 
@@ -473,6 +504,12 @@ class Player(Drive):
         hints = [f"`{name}` is being canceled and has not ended: write `canceled from {name}`" for name in names]
         return replace(fault, hint="; ".join(filter(None, [fault.hint, *hints])) or None)
 
+    def _with_rejected(self, fault: Diagnostic) -> Diagnostic:
+        """Return a finding with a hint at the goals of the last step that the controller rejected."""
+        rejected = [event for event, is_accepted in self._goals[self._goals_before :] if not is_accepted]
+        hints = [f"the controller rejected the goal of `{self._called(event)}`" for event in dict.fromkeys(rejected)]
+        return replace(fault, hint="; ".join(filter(None, [fault.hint, *hints])) or None)
+
     # Expectations
 
     def _expectation(self, line: Expectation) -> Diagnostic | None:
@@ -496,9 +533,21 @@ class Player(Drive):
             case Violation(assumption=assumption):
                 violated = assumption in self._controller.violations[self._violations_before :]
                 return None if violated else line.fault(f"the last step does not violate `{assumption}`", self._state())
+            case Acceptance():
+                return self._accepted(line, find_event(self._graph.model, line.event))
             case SentCommand():
                 return self._sent(line, find_event(self._graph.model, line.event))
         raise TypeError(f"{type(line).__name__} is no expectation")
+
+    def _accepted(self, line: Acceptance, event: sct.Event) -> Diagnostic | None:
+        since = self._goals[self._goals_before :]
+        answers = [is_accepted for goal, is_accepted in since if plant_of(goal) is plant_of(event)]
+        if line.expected in answers:
+            return None
+        called = f"goal of `{self._called(event)}`"
+        if not answers:
+            return line.fault(f"the last step sends no {called}", f"write `request from {self._called(event)}` before")
+        return line.fault(f"the controller {'rejected' if line.expected else 'accepted'} the {called}", self._state())
 
     def _verdict(self, line: Permission, event: sct.Event) -> Diagnostic | None:
         engine = self._controller.engine
@@ -556,12 +605,9 @@ class Player(Drive):
 
     def _handed_on(self, event: sct.Event) -> list[Sequence[str]]:
         """Return the paths in a command at which data is forwarded unchanged."""
-        sendings = [sending for publisher in self._graph.publishers for sending in publisher.sendings]
-        sendings += [service.request for service in self._graph.serviceClients]
-        sendings += [action.request for action in self._graph.actionClients]
         return [
             tuple(field.path)
-            for sending in sendings
+            for _, _, sending in sent_messages(self._graph)
             if sending.event == event
             for field in fields_set(sending)
             if isinstance(field.value, rosgraph.WireAccess) and holds_objects(field.type)

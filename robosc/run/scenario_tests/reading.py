@@ -34,7 +34,7 @@ _WITHIN = re.compile(rf"(?P<expected>.*\S)\s+within\s+{TIME}")
 #: The beginning of an attempt at a block or a time.
 _ALMOST_BLOCK = re.compile(r"(?:repeat|before)\b.*\{")
 _ALMOST_WITHIN = re.compile(r".*\swithin(?:\s+\d\S*(?:\s+\w+)?)?")
-_ALMOST_EXPECTED = re.compile(EVENT + r"\s+(?:allowed|forbidden|(?:not\s+)?sent)\b.*")
+_ALMOST_EXPECTED = re.compile(EVENT + r"\s+(?:allowed|forbidden|(?:not\s+)?sent|accepted|rejected)\b.*")
 #: A millisecond and a day. Shorter intervals and longer waits are mistakes.
 _SHORTEST = 0.001
 _LONGEST = 86_400
@@ -43,7 +43,7 @@ _MOST_ROUNDS = 1_000_000
 _DEEPEST = 10
 _EXPECTED = re.compile(
     EVENT + r"\s+(?:(?P<verdict>allowed)|(?P<forbidden>forbidden)(?:\s+by\s+(?P<by>.+))?"
-    r"|(?P<not_sent>not\s+sent)"
+    r"|(?P<not_sent>not\s+sent)|(?P<taken>accepted|rejected)"
     r"|(?P<sent>sent)(?:\s+(?P<count>\d{1,9})\s+times?)?(?:\s+with\s+(?P<data>.+))?)"
 )
 #: The name of an assumption, as in a model or as in output: `A1[Cell[2]]`, `A1[Cell2]`.
@@ -165,6 +165,14 @@ class SentCommand(Expectation):
     expected: bool = True
     data: Any = None
     count: int | None = None
+
+
+@dataclass(frozen=True)
+class Acceptance(Expectation):
+    """Expectation that the controller accepted a goal of the last step, or rejected it."""
+
+    event: str
+    expected: bool = True
 
 
 @dataclass(frozen=True)
@@ -403,7 +411,8 @@ class _Reader:
             yield Violation(line.file, line.span, assumption, within=within)
         elif match is None:
             if _ALMOST_EXPECTED.fullmatch(text):
-                hint = "write `move sent 3 times with {…} within 2 s`, `move not sent` or `move forbidden by SR1`"
+                hint = "write `move sent 3 times with {…} within 2 s`, `move not sent`, `move forbidden by SR1` or"
+                hint += " `inspect rejected`"
                 self._fault(expected, "this is no expectation about an event", hint)
             elif _is_whole(text):
                 self.conditions.append(Holds(line.file, span, text, len(self.conditions), within=within))
@@ -412,6 +421,12 @@ class _Reader:
                 self._fault(
                     expected, "this is not a single condition", "close each bracket, and write a comment after `//`"
                 )
+        else:
+            yield from self._about_event(match, line, within, expected)
+
+    def _about_event(self, match: re.Match[str], line: Line, within: float | None, expected: Line) -> Iterator[Line]:
+        if match["taken"]:
+            yield from self._taken(match, line, within, expected)
         elif match["sent"] or match["not_sent"]:
             yield from self._sent(match, line, within, expected)
         else:
@@ -419,6 +434,13 @@ class _Reader:
             if by is not None and not by.strip():
                 self._fault(expected, "`forbidden by` names no requirement", "write its name, or a part of its text")
             yield Permission(line.file, line.span, event_in_words(match), bool(match["forbidden"]), by, within=within)
+
+    def _taken(self, match: re.Match[str], line: Line, within: float | None, expected: Line) -> Iterator[Line]:
+        if match["kind"] not in (None, "request"):
+            hint = "write `inspect accepted` or `inspect rejected`"
+            self._fault(expected, "only a goal is accepted or rejected", hint)
+            return
+        yield Acceptance(line.file, line.span, event_in_words(match), match["taken"] == "accepted", within=within)
 
     def _sent(self, match: re.Match[str], line: Line, within: float | None, expected: Line) -> Iterator[Line]:
         data, count = None, None

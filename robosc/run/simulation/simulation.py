@@ -13,7 +13,7 @@ from robosc.model.engine import Role
 from robosc.model.semantics.definition import named_state
 from robosc.model.semantics.domains import domain
 from robosc.model.semantics.printing import SctPrinter
-from robosc.model.semantics.roles import assumption_name, assumption_text, event_name
+from robosc.model.semantics.roles import assumption_name, assumption_text, event_name, is_goal
 from robosc.run.simulation.data import EventData
 from robosc.run.simulation.script import REFUSE, WAIT
 from robosc.run.simulation.unreadable import Unreadable
@@ -104,7 +104,7 @@ class Simulation:
         self.data = EventData(self.engine, graph, types)
         self.trace: list[RequestResult] = []
         self._before: list[tuple[State, Stored]] = []
-        self._inputs = {event_name(event): list(event.inputs) for plant in model.plants for event in plant.events}
+        self._events = {event_name(event): event for plant in model.plants for event in plant.events}
 
     @property
     def enabled(self) -> list[str]:
@@ -151,7 +151,7 @@ class Simulation:
             return None
         event = random.choice(enabled)
         for _ in range(_DRAWS):
-            values = {event_input.name: _any(event_input.type, random) for event_input in self._inputs[event]}
+            values = {carried.name: _any(carried.type, random) for carried in self._events[event].inputs}
             self.engine.set_inputs(event, values)
             if self.engine.permits_inputs(event):
                 break
@@ -165,11 +165,13 @@ class Simulation:
     def reason(self, event: str, by: Blocked | Unreadable) -> str:
         """Return in words why an event can't happen in the present state; `by` is what blocks it."""
         if isinstance(by, Unreadable):
+            if is_goal(self._events[event]):
+                return f"{by.why}, so the controller rejects the goal"
             return f"{by.why}, so it counts as {by.error or by.response or 'not received'}"
         if event == REFUSE:
             return "its goal is not being canceled"
         if by is Blocked.PLANT:
-            return "the robot is not ready for it"
+            return _not_ready(self._events[event])
         if by is Blocked.ASSUMPTION:
             return f"excluded by {' and '.join(map(assumption_text, self.engine.violated_assumptions(event)))}"
         if by is Blocked.REQUIREMENT:
@@ -181,6 +183,17 @@ class Simulation:
         needed = SctPrinter()(guard.synthesis) if guard.synthesis is not None else "false"
         otherwise = f"; otherwise, {guard.explanation}" if guard.explanation else ""
         return f"forbidden by synthesis, which requires {needed}{otherwise}"
+
+
+def _not_ready(event: sct.Event) -> str:
+    """Return why the plants block an event."""
+    if is_goal(event):
+        return "the controller rejects the goal"
+    if event.kind == sct.EventKind.request:
+        return "it waits: another request is open"
+    if event.kind == sct.EventKind.cancelRequest:
+        return "no goal is open that a client can cancel"
+    return "the robot is not ready for it"
 
 
 def _any(kind: ex.Type, random: Random) -> Value:
@@ -240,8 +253,10 @@ class LoopSimulation:
         else:
             if not self._in_batch:
                 self._loop.begin()
-            by = self._loop.engine.blocked_by(event) or self.data.unreadable(event, data)
-            violated = violated_names(self._loop.engine, event) if by is Blocked.ASSUMPTION else []
+            engine = self._loop.engine
+            engine.set_inputs(event, inputs)
+            by = engine.blocked_by(event) or engine.inputs_blocked_by(event) or self.data.unreadable(event, data)
+            violated = violated_names(engine, event) if by is Blocked.ASSUMPTION else []
             error = self.data.error_of(event) if violated else by.error if isinstance(by, Unreadable) else None
             if error is not None:
                 data_of_error = self.data.of_unreadable(data)

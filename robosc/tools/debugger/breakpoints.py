@@ -12,6 +12,7 @@ from robosc.analysis.wording import name, words
 from robosc.engine import Blocked
 from robosc.model import sct
 from robosc.model.places import place
+from robosc.model.semantics.communication import ANSWERS
 from robosc.model.semantics.edges import edges_of
 from robosc.model.semantics.roles import event_name
 
@@ -140,7 +141,7 @@ class Targets:
         """
         if text.strip():
             return [self._becomes_forbidden(find_event(self.model, name.strip())) for name in text.split(",")]
-        kinds = (sct.EventKind.trigger, sct.EventKind.plain)
+        kinds = (sct.EventKind.trigger, sct.EventKind.plain, *ANSWERS)
         events = [event for plant in self.model.plants for event in plant.events]
         return [self._becomes_forbidden(event) for event in events if event.controllable and event.kind in kinds]
 

@@ -25,7 +25,13 @@ if TYPE_CHECKING:
     from robosc.engine.state import State
     from robosc.run.simulation.replay import Moment, Replay
 
-_COMMUNICATIONS = (sct.PlantKind.message, sct.PlantKind.service, sct.PlantKind.action)
+_COMMUNICATIONS = (
+    sct.PlantKind.message,
+    sct.PlantKind.service,
+    sct.PlantKind.action,
+    sct.PlantKind.serviceServer,
+    sct.PlantKind.actionServer,
+)
 
 
 @dataclass(frozen=True)

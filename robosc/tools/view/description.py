@@ -13,6 +13,7 @@ from robosc.language.text import Text
 from robosc.model import expression as ex
 from robosc.model import rosgraph, sct
 from robosc.model.places import place
+from robosc.model.semantics.communication import ANSWERS
 from robosc.model.semantics.definition import reported_variables
 from robosc.model.semantics.domains import domain
 from robosc.model.semantics.edges import edges_of, origin
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 #: Kinds of automata in a robot's text: behaviors of components, and requirement automata.
 AUTOMATA = (sct.PlantKind.behaviour, sct.PlantKind.requirement)
 #: Kinds of events that go out to the robot: the supervisor allows or forbids them, and users call them commands.
-_OUTGOING = (sct.EventKind.trigger, sct.EventKind.cancel, sct.EventKind.plain)
+_OUTGOING = (sct.EventKind.trigger, sct.EventKind.cancel, sct.EventKind.plain, *ANSWERS)
 #: Kinds of input fields by type.
 _KINDS = {ex.BooleanType: "checkbox", ex.IntegerType: "whole", ex.DoubleType: "number", ex.StringType: "text"}
 #: Maximum length of a transition's label. Longer labels are cut; the title has the whole text.

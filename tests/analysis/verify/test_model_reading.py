@@ -25,6 +25,7 @@ from tests.fuzz.mutants import LIBRARIES, sources
 from tests.random_assumptions import assuming_robot
 from tests.random_robots import random_robot
 from tests.random_second_edition import second_edition_robot
+from tests.random_served import served_robot
 from tests.searching import examples
 
 ROBOT = """\
@@ -620,7 +621,7 @@ def test_every_model_of_the_repository_says_what_its_plants_do(tmp_path: Path) -
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("made", [random_robot, second_edition_robot, assuming_robot])
+@pytest.mark.parametrize("made", [random_robot, second_edition_robot, assuming_robot, served_robot])
 def test_a_random_robot_says_what_its_plants_do(made: Callable[[int], str], tmp_path: Path) -> None:
     count = examples(10)
     assert [agrees(tmp_path / "model.rscd", made(seed)) for seed in range(count)].count(True) > 0.8 * count

@@ -8,9 +8,9 @@ from robosc.base.ros_types import RosTypes
 from robosc.language.configuration.parameters import controller_parameters
 from robosc.run.node_tests.drive import parameters
 from robosc.run.node_tests.messages import leaf_values
-from robosc.run.node_tests.robot import Robot, RunningGoal
+from robosc.run.node_tests.robot import PlayedRequest, Robot, RunningGoal
 from robosc.run.node_tests.samples import all_incoming
-from robosc.run.node_tests.trace_player import START, Port, cancelled
+from robosc.run.node_tests.trace_player import START, Port, answered, cancelled, fed_back
 from robosc.run.runtime.core.controller import Controller
 from robosc.run.runtime.core.event_log import EventLog
 from robosc.run.runtime.core.event_loop import EventLoop
@@ -20,6 +20,7 @@ from robosc.run.runtime.core.settings import Settings
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
+    from queue import Queue
 
     from robosc.base.ros_types import RosDistribution
     from robosc.language.configuration import Configuration
@@ -58,6 +59,24 @@ class _Robot(Robot):
         handlers.accepted()
         self.port.sent[client.identifier].put(goal)
         return made
+
+
+class Client(PlayedRequest):
+    """A client that passes all answers to the player."""
+
+    def __init__(self, answers: Queue[Any], feedback: Queue[Any] | None = None) -> None:
+        self._answers = answers
+        self.feedback = feedback
+
+    def give(self, response: Any = None) -> None:
+        self._answers.put(response)
+
+    def feed_back(self, feedback: Any) -> None:
+        assert self.feedback is not None
+        self.feedback.put(feedback)
+
+    def end(self, outcome: GoalOutcome, result: Any) -> None:
+        self._answers.put((outcome.value, result))
 
 
 class _AtOnce(EventLog):
@@ -124,6 +143,25 @@ class InProcessNode(Port):
         client, goal = self._goal(action)
         ends = {"succeeded": client.response, "aborted": client.error, "canceled": client.canceled}
         goal.handlers.ended(_OUTCOMES[outcome], self._made(ends[outcome].event, fields), "")
+        self._work()
+
+    def call(self, service: str, fields: dict[str, Any]) -> None:
+        server = next(server for server in self._graph.serviceServers if server.identifier == service)
+        request = self._made(server.request.event, fields)
+        self._controller.services[server].call(request, Client(self.sent[answered(service)]))
+        self._work()
+
+    def send_goal(self, action: str, fields: dict[str, Any]) -> None:
+        server = next(server for server in self._graph.actionServers if server.identifier == action)
+        goal = self._made(server.request.event, fields)
+        if self._controller.actions[server].accepts(goal):
+            client = Client(self.sent[answered(action)], self.sent[fed_back(action)])
+            self._controller.actions[server].begin(client, goal)
+        self._work()
+
+    def cancel(self, action: str) -> None:
+        server = next(server for server in self._graph.actionServers if server.identifier == action)
+        assert self._controller.actions[server].cancel()
         self._work()
 
     def _goal(self, action: str) -> tuple[rosgraph.ActionClient, RunningGoal]:

@@ -28,9 +28,10 @@ from robosc.run.node_tests.samples import all_incoming
 from robosc.run.node_tests.trace_player import Log, Player, TraceError, read_trace
 from robosc.run.node_tests.trace_test import trace_test
 from robosc.run.runtime.core.node_data import NodeData
+from robosc.run.runtime.core.port import GoalOutcome
 from tests.searching import matrix_but, slow_but
 
-from .in_process_node import InProcessNode
+from .in_process_node import Client, InProcessNode
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -54,6 +55,7 @@ MODELS = {
     "waypoints": ROOT / "tests" / "run" / "runtime" / "waypoints.rscd",
     "keeper": ROOT / "tests" / "ros" / "kept" / "keeper.rscd",
     "crane": ROOT / "tests" / "run" / "simulation" / "crane.rscd",
+    "visitor": ROOT / "tests" / "run" / "scenario_tests" / "visitor.rscd",
     "push_ball": ROOT / "examples" / "push_ball" / "push_ball.rscd",
     "sprayer": ROOT / "examples" / "sprayer" / "sprayer.rscd",
     "warehouse_robot": ROOT / "examples" / "warehouse_robot" / "warehouse_robot.rscd",
@@ -133,7 +135,7 @@ def case(
 
 #: The sprayer's tours take longest to plan. A run of all tests plans those of the other large robot.
 ROBOTS = [
-    *slow_but(["line_follower", "porter", "kept"], [name for name in MODELS if name != "sprayer"]),
+    *slow_but(["line_follower", "porter", "kept", "visitor"], [name for name in MODELS if name != "sprayer"]),
     *matrix_but([], ["sprayer"]),
 ]
 every_model = pytest.mark.parametrize("case", ROBOTS, indirect=True)
@@ -156,7 +158,7 @@ def test_a_tour_is_an_event_log(case: Case) -> None:
         assert times == sorted(times)
 
 
-@pytest.mark.parametrize("case", ["line_follower", "porter"], indirect=True)
+@pytest.mark.parametrize("case", ["line_follower", "porter", "visitor"], indirect=True)
 def test_tours_see_every_event(case: Case) -> None:
     assert {line["event"] for trace in case.traces for line in trace} == {
         event_name(event)
@@ -365,6 +367,28 @@ def test_data_that_changes_on_its_way_is_noticed(case: Case, monkeypatch: pytest
     monkeypatch.setattr(InProcessNode, "connect", connect)
     with pytest.raises(TraceError, match=r"the node logs out message_halt.c_trigger .* but no message arrives"):
         case.play()
+
+
+@pytest.mark.parametrize("case", ["visitor"], indirect=True)
+def test_another_answer_than_the_log_has_is_noticed(case: Case, monkeypatch: pytest.MonkeyPatch) -> None:
+    put = Client.end
+    monkeypatch.setattr(Client, "end", lambda client, _, result: put(client, GoalOutcome.ABORTED, result))
+    with pytest.raises(TraceError, match=r"action_visit.c_(response|canceled), but the goal ends as aborted"):
+        case.play()
+    monkeypatch.setattr(Client, "end", lambda *_: None)
+    with pytest.raises(TraceError, match=r"the node logs out action_visit\.c_\w+, but no message arrives"):
+        case.play()
+    monkeypatch.setattr(Client, "end", put)
+    monkeypatch.setattr(Client, "feed_back", put_other)
+    with pytest.raises(TraceError, match=r"number_of_recoveries arrives as 7"):
+        case.play()
+
+
+def put_other(client: Client, feedback: Any) -> None:
+    """Pass other feedback to the player."""
+    feedback.number_of_recoveries = 7
+    assert client.feedback is not None
+    client.feedback.put(feedback)
 
 
 def test_a_node_that_forgets_is_noticed(case: Case) -> None:

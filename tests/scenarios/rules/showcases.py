@@ -34,12 +34,28 @@ class WarehouseRobot(RuleBook):
         #: True from the first request to leave the dock, or the aisle, until it has succeeded or was refused.
         self.undocking = self.leaving = False
         self.limit: float | None = None
+        #: Whether a shelf is known, whether the present one was served, and whether its order was canceled.
+        self.known_shelf = self.delivered = self.halted = False
+        #: Whether a goal is open, was accepted too much, and whether the fleet manager's call began a mission.
+        self.goal = self.busy = self.granted = False
 
     def heard(self, name: str, value: Any) -> None:
+        self._take_order(name)
         done = isinstance(value, dict) and value.get("success") is True
         self._sense(name, value)
         self._hear_answer(name, done=done)
         self._go_on(name, done=done)
+
+    def _take_order(self, name: str) -> None:
+        """Process an order of a client, or its cancel."""
+        if name in ("order", "fetch.u_request", "again.u_request"):
+            self.granted = self.phase == "idle" and (self.known_shelf or name != "again.u_request")
+            if self.granted:
+                self.phase, self.known_shelf, self.delivered, self.halted = "outbound", True, False, False
+        if name == "fetch.u_request":
+            self.busy, self.goal = not self.granted or self.goal, True
+        elif name == "fetch.u_cancel":
+            self.halted = self.phase == "outbound"
 
     def _sense(self, name: str, value: Any) -> None:
         """Process a message of a sensor."""
@@ -79,14 +95,12 @@ class WarehouseRobot(RuleBook):
     def _go_on(self, name: str, *, done: bool) -> None:
         """Update the phase of the robot's task after an input."""
         match self.phase, name:
-            case "idle", "order":
-                self.phase = "outbound"
             case "outbound", "navigate":
-                self.phase = "at shelf"
+                self.phase = "homebound" if self.halted else "at shelf"
             case "at shelf", "raise" | "raise.u_error":
                 self.phase = "serving" if done else "served"
             case "serving", "served":
-                self.phase = "served"
+                self.phase, self.delivered = "served", True
             case "served", "lower" if done:
                 self.phase = "homebound"
             case "homebound", "navigate":
@@ -97,7 +111,8 @@ class WarehouseRobot(RuleBook):
 
     def _turn_back(self) -> None:
         paused = self.time - self.failed_at < self.pause
-        if self.phase == "outbound" and not (self.docked or self.charged or self.under_way or paused):
+        due = self.halted or not self.charged
+        if self.phase == "outbound" and due and not (self.docked or self.under_way or paused):
             self.phase = "homebound"
 
     def zone(self, ranges: list[float | None]) -> str:
@@ -119,6 +134,7 @@ class WarehouseRobot(RuleBook):
             ("obstructed" in self.zones.values(), "something is in the way"),
             (self.silent, "a lidar is silent"),
             (self.phase == "outbound" and not self.charged, "out with little power"),
+            (self.phase == "outbound" and self.halted, "the order is canceled"),
         ]
 
     def overdue(self) -> Fault:
@@ -128,6 +144,7 @@ class WarehouseRobot(RuleBook):
             (self.under_way and not self.canceling and wrong is not None, "the journey has not been cancelled"),
             ((self.leaves_dock or self.asks_dock) and self.stopped and not self.stops_dock, "the dock moves it on"),
             (self.limit == self.fast and not free, "the limit is too high"),
+            (self.busy, "a goal was accepted during another mission"),
         )
 
     def sent(self, name: str, value: Any) -> Fault:
@@ -197,6 +214,7 @@ class WarehouseRobot(RuleBook):
             (self.stopped, "the dock is stopped"),
             (not self.docked, "it is off its dock"),
             (self.phase != "outbound", "nothing is ordered"),
+            (self.halted and not self.undocking, "the order is canceled"),
             (not self.charged and not self.undocking, "little power"),
             (self.leaves_dock, "it leaves its dock already"),
         )
@@ -226,6 +244,31 @@ class WarehouseRobot(RuleBook):
             (self.time - self.refused_at < self.pauses.get(self.refused, 0.0), "it was refused just now"),
         )
         self.asks_dock = True
+        return fault
+
+    def _again_response(self, value: Any) -> Fault:
+        granted, self.granted = self.granted, False
+        return first_fault((value["success"] is not granted, "the answer is wrong"))
+
+    def _fetch_response(self, _: Any) -> Fault:
+        return self._end((not self.delivered, "nobody was served"))
+
+    def _fetch_error(self, _: Any) -> Fault:
+        return self._end((self.delivered, "the shelf was served"), (self.halted, "the order was canceled"))
+
+    def _fetch_canceled(self, _: Any) -> Fault:
+        return self._end((not self.halted, "the order was not canceled"))
+
+    def _end(self, *claims: tuple[bool, str]) -> Fault:
+        """Judge the end of a goal. A canceled order may end in the dock, before the robot has left it."""
+        if self.phase == "outbound" and self.halted and self.docked:
+            self.phase = "idle"
+        fault = first_fault(
+            (not self.goal, "there is no goal"),
+            (not self.docked or self.phase != "idle", "it is not at home"),
+            *claims,
+        )
+        self.goal = False
         return fault
 
     def _speed_limit(self, value: Any) -> Fault:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from robosc.analysis.verify.controller_reading.loop import event_names
 from robosc.analysis.verify.model_reading.lockstep import DifferenceError
-from robosc.analysis.verify.model_reading.machine import EventName
+from robosc.analysis.verify.model_reading.machine import SERVERS, EventName
 
 if TYPE_CHECKING:
     from robosc.analysis.verify.model_reading.controller import ControllerText
@@ -41,12 +41,15 @@ def compare_topics(controller: ControllerText, plants: Machine, graph: rosgraph.
             if events != sorted(events, key=ours.index):
                 messages = f"the messages on topic `{topic}`"
                 raise DifferenceError(f"{messages} are in another order in the node than in the text")
-    for service in graph.serviceClients:
-        plant = names[service.request.event].plant
-        _compare(plant, text, service.identifier, is_same=service.identifier == text.topics[plant])
-    for action in graph.actionClients:
-        plant = names[action.request.event].plant
-        _compare(plant, text, action.identifier, is_same=action.identifier == text.topics[plant])
+    users: list[Any] = [*graph.serviceClients, *graph.actionClients, *graph.serviceServers, *graph.actionServers]
+    for user in users:
+        plant = names[user.request.event].plant
+        _compare(plant, text, user.identifier, is_same=user.identifier == text.topics[plant])
+    served = sorted(plant for plant in text.order if plant.kind in SERVERS)
+    servers = sorted(plant for plant in (names[user.request.event].plant for user in users) if plant.kind in SERVERS)
+    if served != servers:
+        missing = ", ".join(f"`{plant.origin}`" for plant in sorted({*served} ^ {*servers}))
+        raise DifferenceError(f"the text and the node do not serve the same: {missing}")
 
 
 def _compare(plant: Plant, text: Machine, shown: str, *, is_same: bool) -> None:

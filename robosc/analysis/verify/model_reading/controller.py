@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.analysis.verify.model_reading.machine import EventName, Plant, Slot
+from robosc.analysis.verify.model_reading.machine import EventName, Plant, Slot, choice_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -19,6 +19,7 @@ STARTS, STOPS, GOES_ON = "starts anew", "stops", "goes on"
 CANCEL, TRIGGER, SILENT, DATA, INCOMING, TIMEOUT = "cancel", "trigger", "silent", "data", "incoming", "timeout"
 #: Role of an event in the control loop, by its kind; all other events come from the robot.
 _ROLES = {"cancel": CANCEL, "trigger": TRIGGER, "tau": SILENT, "reset": SILENT, "data": DATA, "timeout": TIMEOUT}
+_ROLES |= dict.fromkeys(("reply", "replyFeedback", "replyError", "replyCanceled"), TRIGGER)
 #: Largest bound in 32 bits.
 _LARGEST_BOUND = 2**32 - 1
 
@@ -66,8 +67,8 @@ class ControllerText:
 
     @property
     def ticks(self) -> list[list[EventName]]:
-        """Events of services and actions: each starts once in a tick."""
-        return [names for names in self._together(TRIGGER) if names[0].plant.kind != "message"]
+        """Events of services and actions: each starts once in a tick. Answers to clients are sent at once."""
+        return [names for names in self._together(TRIGGER) if names[0].plant.kind in ("service", "action")]
 
     def _together(self, role: str) -> list[list[EventName]]:
         """Return messages grouped by topic, and other events grouped by plant."""
@@ -89,7 +90,7 @@ class ControllerText:
 
     def choice(self, name: EventName) -> Plant | None:
         """Return the choice of the data that a trigger sends; None if there is none."""
-        plant = Plant("data", name.plant.origin)
+        plant = choice_of(name)
         return plant if self.role(name) == TRIGGER and plant in self.alternatives else None
 
     def bound(self, proved: int | None) -> int:

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     Value: TypeAlias = bool | int | str
 
 BOOLEANS: Domain = (False, True)
+#: Kinds of the plants of services and actions that others call.
+SERVERS = ("serviceServer", "actionServer")
 
 
 class Plant(NamedTuple):
@@ -61,6 +63,12 @@ class EventName(NamedTuple):
 
     plant: Plant
     name: str
+
+
+def choice_of(name: EventName) -> Plant:
+    """Return the plant that chooses the data of an event. All ends of a goal for the controller share theirs."""
+    is_feedback = name.name == "c_feedback"
+    return Plant("data", f"{name.plant.origin}.feedback" if is_feedback else name.plant.origin)
 
 
 class Condition(NamedTuple):

@@ -22,6 +22,10 @@ if TYPE_CHECKING:
 _Definition = TypeVar("_Definition")
 _LITERALS = (ex.BooleanLiteral, ex.IntegerLiteral, ex.DoubleLiteral, ex.StringLiteral)
 _TOKEN = re.compile(r'"(?:[^"\\]|\\.)*+"?|\d+(?:\.\d+)?|\w+|\.\.|=>|!=|<=|>=|[^\s()^]')
+#: Kinds of the plants of communications that others call.
+_SERVED = {robosc.OutgoingService: "serviceServer", robosc.OutgoingAction: "actionServer"}
+#: Location of a service while it is running; an action has two.
+_WHILE_RUNNING = {"service": "wait_for_response", "serviceServer": "open"}
 #: Functions that the supervisor computes, of integers.
 _OF_SUPERVISOR = ("abs", "min", "max", "mod")
 #: Requirements that follow events: they have states of their own.
@@ -310,7 +314,9 @@ class Names:
                 return self._called(self.leaf(At(Slot(instance.plant), item.name)), instance.name, item.name)
             case robosc.Variable() if instance is not None:
                 return (yield from self._variable(access, instance, place))
-            case robosc.Service() | robosc.Action() if instance is not None:
+            case robosc.Service() | robosc.Action() | robosc.OutgoingService() | robosc.OutgoingAction() if (
+                instance is not None
+            ):
                 return self._running(item, instance)
         if not isinstance(item, robosc.Constant | robosc.Condition):
             raise NotReadError(item)
@@ -349,11 +355,15 @@ class Names:
             return self.observers[automaton, instance, instance]
         return self.observers[automaton, place.within if inside else None, instance]
 
-    def _running(self, call: robosc.Service | robosc.Action, instance: Instance) -> ex.Expression:
-        """Return the condition that a service or action was requested and its end is not known."""
-        slot = Slot(Plant(type(call).__name__.lower(), f"{instance.name}.{call.name}"))
-        if isinstance(call, robosc.Service):
-            running = self.leaf(At(slot, "wait_for_response"))
+    def _running(self, call: robosc.CommunicationType, instance: Instance) -> ex.Expression:
+        """Return the condition that a service or action was requested and its end is not known.
+
+        One that others call is running while a request or goal is open.
+        """
+        kind = kind_of(call)
+        slot = Slot(Plant(kind, f"{instance.name}.{call.name}"))
+        if kind in _WHILE_RUNNING:
+            running = self.leaf(At(slot, _WHILE_RUNNING[kind]))
         else:
             running = ex.Disjunction(left=self.leaf(At(slot, "executing")), right=self.leaf(At(slot, "canceling")))
         return self._called(running, instance.name, call.name, "running")
@@ -469,6 +479,11 @@ class Names:
         if isinstance(part, ex.FunctionCall):
             return [row.symbol, *reduce(lambda words, more: [*words, ",", *more], inside)]
         return [*(inside[0] if len(inside) == 2 else ()), row.symbol, *inside[-1]]
+
+
+def kind_of(communication: robosc.CommunicationType) -> str:
+    """Return the kind of a communication's plant."""
+    return _SERVED.get(type(communication), type(communication).__name__.lower())
 
 
 def words_of(text: str) -> tuple[str, ...]:

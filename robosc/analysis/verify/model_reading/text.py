@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.analysis.verify.model_reading.machine import (
     BOOLEANS,
+    SERVERS,
     At,
     Claim,
     Condition,
@@ -25,6 +26,7 @@ from robosc.analysis.verify.model_reading.machine import (
     Restriction,
     Slot,
     Timer,
+    choice_of,
     compile_condition,
     saturate,
 )
@@ -35,6 +37,7 @@ from robosc.analysis.verify.model_reading.names import (
     Instance,
     Names,
     NotReadError,
+    kind_of,
     words_of,
 )
 from robosc.analysis.verify.model_reading.sent_data import computed_input, constant_data
@@ -66,6 +69,32 @@ _ACTION = {
     "c_cancel": {"executing": "canceling"},
     "u_canceled": {"canceling": "idle"},
     "c_reset": {"ready": "idle", "error": "idle"},
+}
+#: Phases of a service and of an action that others call: the controller answers.
+_SERVICE_SERVER = {"u_request": {"idle": "open"}, "c_response": {"open": "idle"}}
+_ACTION_SERVER = {
+    "u_request": {"idle": "executing"},
+    "u_cancel": {"executing": "canceling"},
+    "c_feedback": {"executing": "executing", "canceling": "canceling"},
+    "c_response": {"executing": "idle", "canceling": "idle"},
+    "c_error": {"executing": "idle", "canceling": "idle"},
+    "c_canceled": {"canceling": "idle"},
+}
+#: Kinds of their events, which have other kinds than those of a service or action that the controller calls.
+_SERVER_KINDS = {
+    "u_request": "request",
+    "u_cancel": "cancelRequest",
+    "c_response": "reply",
+    "c_feedback": "replyFeedback",
+    "c_error": "replyError",
+    "c_canceled": "replyCanceled",
+}
+#: Phases of each kind of communication but messages, by its plant.
+_PHASES = {
+    "service": _SERVICE,
+    "action": _ACTION,
+    "serviceServer": _SERVICE_SERVER,
+    "actionServer": _ACTION_SERVER,
 }
 #: Event names by the keyword of a transition (thesis table 5.1).
 _NAMED = {
@@ -114,9 +143,12 @@ class _TextReading:
         self.plants = plants
         self.machine = Machine()
         self.ports: dict[Plant, _Port] = {}
+        #: Events that a transition of a component names.
+        self.named_events: set[EventName] = set()
         self.statements: dict[Plant, Sequence[tuple[robosc.ProvideStatement, Environment]]] = {}
 
     def run(self) -> Machine:
+        self.collect_named_events()
         for instance in self.names:
             for communication in instance.of(robosc.CommunicationType):
                 self.communication(instance, communication)
@@ -138,6 +170,17 @@ class _TextReading:
             self.machine.provided[plant] = [self.provided_constant(*statement) for statement in statements]
         return self.machine
 
+    def collect_named_events(self) -> None:
+        for instance in self.names:
+            transitions: list[robosc.Transition] = [*instance.behaviour(robosc.ResultTransition)]
+            transitions += (
+                transition for state in instance.behaviour(robosc.State) for transition in state.transitions
+            )
+            for transition in transitions:
+                if isinstance(transition, robosc.ResultTransition):
+                    named = self.of(transition.communicationType, transition.resultType, instance.place)
+                    self.named_events.add(named)
+
     # Communication
 
     def communication(self, instance: Instance, communication: robosc.CommunicationType) -> None:
@@ -149,13 +192,32 @@ class _TextReading:
             comes = communication.direction == robosc.MessageDirection.outgoing
             steps = {"u_response" if comes else "c_trigger": {"ready": "ready"}}
         else:
-            steps = _SERVICE if isinstance(communication, robosc.Service) else _ACTION
+            steps = {
+                name: step for name, step in _PHASES[plant.kind].items() if self.is_possible(EventName(plant, name))
+            }
         places = dict.fromkeys(name for step in steps.values() for pair in step.items() for name in pair)
+        if "canceling" in places and "u_cancel" not in steps and plant.kind in SERVERS:
+            del places["canceling"]  # no client cancels a goal
         first = next(iter(places))
-        slot = self.locations(plant, tuple(places), first, [first], communication)
+        # A client that waits does not make the work of the robot incomplete.
+        marked = [*places] if plant.kind in SERVERS else [first]
+        slot = self.locations(plant, tuple(places), first, marked, communication)
         for name, step in steps.items():
             event = self.event(plant, name, communication)
-            event.participants.append(_phases(slot, step, communication))
+            known = {origin: end for origin, end in step.items() if origin in places}
+            is_rejected = plant.kind == "actionServer" and name == "u_request"
+            is_rejected = is_rejected and EventName(plant, name) not in self.named_events
+            event.participants.append(_phases(slot, {} if is_rejected else known, communication))
+
+    def is_possible(self, name: EventName) -> bool:
+        """Return whether an event exists: an answer of the controller only if a transition names it.
+
+        A client can cancel a goal if a transition names the cancel or the end after it.
+        """
+        if name.plant.kind not in SERVERS or name.name == "u_request":
+            return True
+        causes = {name, EventName(name.plant, "c_canceled")} if name.name == "u_cancel" else {name}
+        return bool(causes & self.named_events)
 
     def locations(
         self, plant: Plant, names: tuple[str, ...], initial: str, marked: Iterable[str], source: ex.Located
@@ -173,13 +235,26 @@ class _TextReading:
     def event(self, plant: Plant, name: str, element: ex.Located) -> Event:
         kind = name.partition("_")[2]
         kind = {"after": "timeout"}.get(kind.rstrip("0123456789"), kind.rstrip("0123456789"))
-        kind = "data" if plant.kind == "data" else kind
+        kind = _SERVER_KINDS[name] if plant.kind in SERVERS else "data" if plant.kind == "data" else kind
         event = Event(kind, controllable=name.startswith("c_"), element=element)
         self.machine.events[EventName(plant, name)] = event
         return event
 
-    def of(self, reference: robosc.CommunicationReference, named: str, place: Environment) -> EventName:
-        return EventName(_plant(*self.names.port(reference, place)), named)
+    def of(self, reference: robosc.CommunicationReference, named: robosc.ResultType, place: Environment) -> EventName:
+        """Return the event that a transition names."""
+        plant = _plant(*self.names.port(reference, place))
+        if plant.kind not in SERVERS:
+            return EventName(plant, _NAMED[named])
+        sender = "u" if named in (robosc.ResultType.request, robosc.ResultType.cancel) else "c"
+        return EventName(plant, f"{sender}_{named}")
+
+    def sending(self, reference: robosc.CommunicationReference, place: Environment) -> EventName:
+        """Return the event with which the controller sends: the request, or the response of a server."""
+        return self.sending_of(_plant(*self.names.port(reference, place)))
+
+    @staticmethod
+    def sending_of(plant: Plant) -> EventName:
+        return EventName(plant, "c_response" if plant.kind in SERVERS else "c_trigger")
 
     # Components
 
@@ -219,7 +294,7 @@ class _TextReading:
             for transition in [definition] if state is None else state.transitions:
                 assert isinstance(transition, robosc.Transition)
                 if isinstance(transition, robosc.ResultTransition):
-                    name = self.of(transition.communicationType, _NAMED[transition.resultType], instance.place)
+                    name = self.of(transition.communicationType, transition.resultType, instance.place)
                 else:
                     kind = type(transition)
                     numbers[kind] += 1
@@ -237,11 +312,13 @@ class _TextReading:
                 place: sorted(transitions, key=lambda transition: not isinstance(transition.eContainer(), robosc.State))
                 for place, transitions in places.items()
             }
-            ignored = name.plant != instance.plant and name.name != "c_trigger"
+            ignored = name.plant != instance.plant and not _is_permitted(name)
             self.machine.events[name].participants.append(self.reaction(name, ordered, instance, ignored))
 
     def timer(self, transition: robosc.TimedTransition, where: str | None, instance: Instance) -> Timer:
-        without = frozenset(self.of(message, "u_response", instance.place) for message in transition.without)
+        without = frozenset(
+            self.of(message, robosc.ResultType.response, instance.place) for message in transition.without
+        )
         environment, unit = instance.place, _UNITS[transition.unit]
         parameter = self.names.parameter(transition.duration, environment)
         if parameter is not None:
@@ -464,16 +541,16 @@ class _TextReading:
 
     def carried_type(self, name: EventName) -> Any:
         """Return the declared type of an event's data; None if it has none."""
-        communication = self.ports[name.plant][1]
-        match communication:
-            case robosc.Message():
-                return communication.type
-            case robosc.Service() | robosc.Action() if name.name == "c_trigger":
+        communication: Any = self.ports[name.plant][1]
+        if isinstance(communication, robosc.Message):
+            return communication.type
+        match name.name.partition("_")[2]:
+            case "trigger" | "request":
                 return communication.requestType
-            case robosc.Service():
+            case "feedback":
+                return communication.feedbackType
+            case "response" | "error" | "canceled":
                 return communication.responseType
-            case robosc.Action():
-                return communication.feedbackType if name.name == "u_feedback" else communication.responseType
         return None
 
     # Provided data
@@ -483,12 +560,18 @@ class _TextReading:
 
         Statements outside of components replace those inside.
         """
-        by_port: dict[_Port, list[tuple[robosc.ProvideStatement, Environment]]] = {}
+        by_event: dict[EventName, list[tuple[robosc.ProvideStatement, Environment]]] = {}
         for statement, place in self.names.definitions(robosc.ProvideStatement):
-            by_port.setdefault(self.names.port(statement.communicationType, place), []).append((statement, place))
-        for port, statements in by_port.items():
+            by_event.setdefault(self.provided_event(statement, place), []).append((statement, place))
+        for name, statements in by_event.items():
             outside = [statement for statement in statements if statement[1].within is None]
-            self.choice(Plant("data", _plant(*port).origin), outside or statements)
+            self.choice(choice_of(name), outside or statements)
+
+    def provided_event(self, statement: robosc.ProvideStatement, place: Environment) -> EventName:
+        """Return the event whose data a statement provides."""
+        if statement.feedback:
+            return self.of(statement.communicationType, robosc.ResultType.feedback, place)
+        return self.sending(statement.communicationType, place)
 
     def choice(self, plant: Plant, statements: Sequence[tuple[robosc.ProvideStatement, Environment]]) -> None:
         self.statements[plant] = statements
@@ -508,13 +591,12 @@ class _TextReading:
 
     def provided_constant(self, statement: robosc.ProvideStatement, place: Environment) -> ProvidedConstant:
         """Return a statement with the inputs that its command has if it sends these data."""
-        port = self.names.port(statement.communicationType, place)
-        trigger = self.machine.events[EventName(_plant(*port), "c_trigger")]
+        event_name = self.provided_event(statement, place)
+        trigger = self.machine.events[event_name]
         sent = constant_data(statement.data, place, self.names)
         if sent is None:
             return ProvidedConstant(statement, None)
-        communication: Any = port[1]
-        declared = communication.type if isinstance(communication, robosc.Message) else communication.requestType
+        declared = self.carried_type(event_name)
         inputs: dict[str, Value] = {}
         for name, part in trigger.parts.items():
             value = computed_input(part, sent, declared, self.names)
@@ -548,7 +630,7 @@ class _TextReading:
         for statement, place in self.names.definitions(robosc.CommunicationRequirement):
             value = not isinstance(statement, robosc.DisablesRequirement)
             for name in dict.fromkeys(
-                self.of(reference, "c_trigger", place) for reference in statement.target.communicationTypes
+                self.sending(reference, place) for reference in statement.target.communicationTypes
             ):
                 condition = self.condition(statement.condition, place, name)
                 self.machine.events[name].restrictions.append(Restriction(condition, value, statement))
@@ -597,12 +679,13 @@ class _TextReading:
     def named(self, reference: robosc.EventReference, place: Environment) -> EventName:
         """Return the named event, the request, or the arrival of an outgoing message."""
         if isinstance(reference, robosc.NamedEvent):
-            return self.of(reference.communicationType, _NAMED[reference.resultType], place)
+            return self.of(reference.communicationType, reference.resultType, place)
         communication = reference.communicationType.communicationType
         comes = (
             isinstance(communication, robosc.Message) and communication.direction == robosc.MessageDirection.outgoing
         )
-        return self.of(reference.communicationType, "u_response" if comes else "c_trigger", place)
+        named = robosc.ResultType.response if comes else robosc.ResultType.request
+        return self.of(reference.communicationType, named, place)
 
     def observer(self, requirement: robosc.Requirement, place: Environment, plant: Plant) -> None:
         if isinstance(requirement, robosc.AutomatonRequirement):
@@ -680,7 +763,17 @@ class _TextReading:
 
 
 def _plant(instance: Instance, communication: robosc.CommunicationType) -> Plant:
-    return Plant(type(communication).__name__.lower(), f"{instance.name}.{communication.name}")
+    return Plant(kind_of(communication), f"{instance.name}.{communication.name}")
+
+
+def _is_permitted(name: EventName) -> bool:
+    """Return whether an event of a communication needs a transition in each component that names it.
+
+    All others are ignored where there is none. A goal for the controller is accepted only by such transitions.
+    """
+    if name.plant.kind in SERVERS:
+        return name.name.startswith("c_") or (name.plant.kind == "actionServer" and name.name == "u_request")
+    return name.name == "c_trigger"
 
 
 def _phases(slot: Slot, step: Mapping[str, str], source: ex.Located) -> Participant:
