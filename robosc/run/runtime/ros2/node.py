@@ -79,6 +79,8 @@ _PROFILES = {
 _KEPT_POLICIES = (QoSPolicyKind.HISTORY, QoSPolicyKind.DEPTH)
 #: Service of an action that takes its goals, below the action's name.
 _SENDING = "/_action/send_goal"
+#: Requests of a service that the middleware keeps, so that a burst arrives whole.
+RECEIVED_REQUESTS = 100
 #: Seconds between two looks at the publishers of topics.
 _LOOK = 0.05
 
@@ -364,7 +366,9 @@ class Ros2Node(RunningNode):
             called(request, under_way[-1])
             return response
 
-        qos = _qos(quality.service_calls(name, self._configuration))
+        chosen = quality.service_calls(name, self._configuration)
+        qos = _qos(chosen)
+        qos.depth = chosen.settings.depth or RECEIVED_REQUESTS
         service = self.node.create_service(kind, name, serve, qos_profile=qos)
         send = service.send_response
         service.send_response = lambda _, caller: under_way.pop().send_with(lambda response: send(response, caller))
