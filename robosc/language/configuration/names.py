@@ -42,6 +42,8 @@ def absolute_names(graph: rosgraph.RosGraph) -> tuple[list[str], list[str], list
 
     return (
         absolute([*(end.topic for end in graph.subscriptions), *(end.topic for end in graph.publishers)]),
-        absolute(user.identifier for user in (*graph.serviceClients, *graph.serviceServers)),
-        absolute(user.identifier for user in (*graph.actionClients, *graph.actionServers)),
+        absolute(
+            [*(end.identifier for end in graph.serviceClients), *(end.identifier for end in graph.serviceServers)]
+        ),
+        absolute([*(end.identifier for end in graph.actionClients), *(end.identifier for end in graph.actionServers)]),
     )
