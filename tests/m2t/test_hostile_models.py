@@ -124,6 +124,9 @@ def bare(path: str, text: str) -> str:
     if kind == ".yaml":
         # A topic's parameter has the topic's name.
         return re.sub(r'"(?:\\.|[^"\\\n])*"|#[^\n]*|^ +\w+(?=: \d+(?:  #|$))', "", text, flags=re.MULTILINE)
+    if kind == ".md":
+        # Markdown is prose: only a tag or a link would be more than text.
+        return " ".join(re.findall(r"<[^>]*>|\]\([^)]*\)", text))
     if kind == ".py":
         tree_of_it = ast.parse(text)
         return " ".join(node.id for node in ast.walk(tree_of_it) if isinstance(node, ast.Name))

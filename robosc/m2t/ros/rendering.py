@@ -115,8 +115,8 @@ def xml_attribute(text: str) -> str:
 
 
 def table_cell(text: str) -> str:
-    """Return the text for a cell of a Markdown table: one line without `|`."""
-    return " ".join(_printable(text).replace("|", "\\|").split())
+    """Return the text for a cell of a Markdown table: one line without `|` and without tags."""
+    return " ".join(_printable(text).replace("|", "\\|").replace("<", "&lt;").split())
 
 
 def yaml_value(value: bool | float | str) -> str:

@@ -176,7 +176,7 @@ class Layer : public GuardedNode<rclcpp::Node> {
       leave();
       return false;
     };
-    shutdown_hook_.emplace(*this, [] {}, undecided);
+    shutdown_hook_.emplace(*this, guard_, [] {}, undecided);
   }
 
   ~Layer() override {
