@@ -73,9 +73,9 @@ The line follower makes {stops} stops while it receives scans of 360 rays (best 
 rate. Times are milliseconds.
 
 {table}
-A node handles topics with little traffic first, and at most ten messages of a topic in a row. So a stop does not wait
-behind scans. Under overload, each topic drops its oldest messages beyond its [queue](configuration.md),
-and services still get their turn.
+`robosc run` handles topics with little traffic first, and at most ten messages of a topic in a row. So a stop does not
+wait behind scans. Under overload, each topic drops its oldest messages beyond its [queue](configuration.md), and
+services still get their turn.
 
 `robosc run` handles about 3,000 messages a second of this robot with one core. For more, or for a model that computes
 much from each message, generate a compiled node.

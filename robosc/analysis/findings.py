@@ -320,7 +320,7 @@ class _Findings:
         plant = observed.plant
         ends = [event for event in plant.events if event.kind in ENDING_ANSWERS]
         is_action = plant.kind == sct.PlantKind.actionServer
-        what, word = ("goal", "ends") if is_action else ("request", "is answered")
+        what, never = ("goal", "never ends") if is_action else ("request", "is never answered")
         named = join_with_and([f"`{words(event).partition(' ')[0]} to {reference(plant)}`" for event in ends])
         possible = f"{named} can{'not' if len(ends) == 1 else ' no longer'} happen"
         why = f"no transition names `response to {reference(plant)}`{' or another end' * is_action}"
@@ -330,7 +330,7 @@ class _Findings:
         return _finding(
             plant,
             "goal-never-ends",
-            f"a {what} of `{name(plant)}` possibly never {word}: {why}",
+            f"a {what} of `{name(plant)}` possibly {never}: {why}",
             f"write {' or '.join(written)} in the states in which it is then open",
         )
 

@@ -150,7 +150,7 @@ def _packages(graph: rosgraph.RosGraph, ros_types: RosTypes, ros: int) -> Iterat
         if distribution.lacks_package(package):
             message = f"{distribution.name} has no package {package}, only {other.name} has it"
             hint = (
-                f"generate for {other.name}; if you have a {package} for {distribution.name}, add its folder with"
+                f"generate for {other.name}; if {package} exists for {distribution.name}, add its folder with"
                 " --interface-path or ROBOSC_INTERFACE_PATH"
             )
             yield _error(interface, message, hint)

@@ -182,7 +182,7 @@ def test_a_package_of_the_user_counts_for_each_ros(tmp_path: Path) -> None:
     answer = CliRunner().invoke(main, options)
     assert answer.exit_code == 1
     assert f"{model}:2:76: error: ROS 1 has no package nav2_msgs, only ROS 2 has it [ros-node]" in answer.output
-    assert "hint: generate for ROS 2; if you have a nav2_msgs for ROS 1, add its folder" in answer.output
+    assert "hint: generate for ROS 2; if nav2_msgs exists for ROS 1, add its folder" in answer.output
     assert not (tmp_path / "out").exists()
     answer = CliRunner().invoke(main, [*options, "--interface-path", str(ROS1_INTERFACES)])
     assert answer.exit_code == 0, answer.output
