@@ -88,6 +88,7 @@ _MESSAGE = rosgraph.InterfaceKind.message
 #: Types of reports: JSON, and statuses of components.
 _TEXT = rosgraph.Interface(package="std_msgs", type="String", kind=_MESSAGE)
 _STATUSES = rosgraph.Interface(package="diagnostic_msgs", type="DiagnosticArray", kind=_MESSAGE)
+_HEARTBEATS = rosgraph.Interface(package="bond", type="Status", kind=_MESSAGE)
 
 
 @dataclass(frozen=True)
@@ -240,7 +241,13 @@ class RosTarget:
             player=_player(name, into),
             about=configuration.package,
             has_license=bool(_license(configuration)),
-            described_reports=_described(reports_blocked, reported_statuses, kind_of_state, configuration),
+            described_reports=_described(
+                reports_blocked,
+                reported_statuses,
+                kind_of_state,
+                configuration,
+                has_bond=configuration.has_bond and ros.version == 2 and not layer,
+            ),
             spelled=ros.spelled,
             description=configuration.package.description or text,
             included=sorted([*own, *(f"{header}.hpp" for header in included)]),
@@ -341,7 +348,12 @@ def _license(configuration: Configuration) -> dict[str, str]:
 
 
 def _described(
-    reports_blocked: bool, statuses: Sequence[Status], typed: rosgraph.Interface, configuration: Configuration
+    reports_blocked: bool,
+    statuses: Sequence[Status],
+    typed: rosgraph.Interface,
+    configuration: Configuration,
+    *,
+    has_bond: bool,
 ) -> list[tuple[str, rosgraph.Interface, str]]:
     """Return the topics of a node's reports about itself: name, type and content."""
     shown = configuration.publish_state_information
@@ -351,6 +363,7 @@ def _described(
         ("~/typed_state", typed, "the state of each component", shown and configuration.typed_state),
         ("~/blocked", _TEXT, "each blocked command with the reason, as JSON", reports_blocked),
         ("/diagnostics", _STATUSES, "a status for each component", bool(statuses)),
+        ("bond", _HEARTBEATS, "heartbeats for `nav2_lifecycle_manager`", has_bond),
     ]
     return [(name, kind, content) for name, kind, content, published in described if published]
 

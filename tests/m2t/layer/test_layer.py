@@ -241,6 +241,11 @@ def test_settings_that_mean_nothing_to_a_layer(usher: robosc.Models) -> None:
     assert [finding.message.split()[0] for finding in found] == ['"retryMs"', '"watchdogMs"', '"onShutdown"']
 
 
+def test_the_readme_of_a_layer_describes_no_managed_node(usher: robosc.Models) -> None:
+    settings = Configuration.model_validate({"lifecycle": {"bond": True}})
+    assert robosc.generate(TARGET, usher, settings)["README.md"] == robosc.generate(TARGET, usher)["README.md"]
+
+
 def test_says_what_synthesis_added_is_the_reason(usher: robosc.Models) -> None:
     # A message has no requirement: only synthesis blocks it.
     text = robosc.generate(TARGET, usher)["src/usher_layer_node.cpp"]
