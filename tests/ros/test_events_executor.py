@@ -54,7 +54,7 @@ def test_a_component_stops_its_robot_and_ends_in_order(ros2_workspace: Workspace
             processes.wait_until(lambda: speeds()[-1:] == [0.0], "the robot stops")
 
 
-@pytest.mark.parametrize("executor", ["single", "multi", "events"])
+@pytest.mark.parametrize("executor", ["single", "multi", "events", "events-cbg-single"])
 def test_components_come_and_go_while_their_services_are_called(
     ros2_workspace: Workspace, tmp_path: Path, executor: str
 ) -> None:
@@ -63,6 +63,8 @@ def test_components_come_and_go_while_their_services_are_called(
     with middleware(ros2_workspace, tmp_path / "run") as processes:
         program = install / "events_executor/lib/events_executor/churn"
         churn = processes.start("churn", [program, executor, ROUNDS, *libraries])
-        assert churn.wait(600) == 0, processes.logs()
+        if churn.wait(600) == 2:
+            pytest.skip(f"this ROS 2 has no executor `{executor}`")
+        assert churn.returncode == 0, processes.logs()
     output = (tmp_path / "run" / "churn.log").read_text()
     assert f"unloaded {int(ROUNDS) * len(COMPONENTS)}, answered yes\n" in output

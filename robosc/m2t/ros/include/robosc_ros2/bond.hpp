@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <iomanip>
+#include <memory>
 #include <optional>
 #include <random>
 #include <sstream>
@@ -35,7 +36,8 @@ class Bond {
     publisher_ = rclcpp::create_publisher<Status>(node, "bond", rclcpp::QoS(5));
     subscription_ = node.template create_subscription<Status>("bond", rclcpp::QoS(100),
                                                               guard([this](const Status& other) { hear(other); }));
-    heartbeat_.emplace(node, guard, kHeartbeat, [this] {
+    // The manager measures the silence in real time, also while a simulation is paused.
+    heartbeat_.emplace(std::make_shared<rclcpp::Clock>(RCL_STEADY_TIME), guard, kHeartbeat, [this] {
       publish(true);
       heartbeat_->start();
     });

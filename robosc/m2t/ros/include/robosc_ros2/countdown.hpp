@@ -36,9 +36,13 @@ class Countdown {
  public:
   template <typename Node>
   Countdown(Node& node, const CallbackGuard& guard, std::chrono::milliseconds time, std::function<void()> over)
+      : Countdown(waiting_clock(node), guard, time, std::move(over)) {}
+  /// The same on another clock.
+  Countdown(rclcpp::Clock::SharedPtr clock, const CallbackGuard& guard, std::chrono::milliseconds time,
+            std::function<void()> over)
       : over_(std::move(over)),
         time_(time),
-        clock_(waiting_clock(node)),
+        clock_(std::move(clock)),
         beat_(guard.at_each_beat([this] { look(); })) {}
 
   Countdown(const Countdown&) = delete;
