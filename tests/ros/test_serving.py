@@ -328,6 +328,9 @@ def test_an_inactive_node_rejects_goals_and_answers_nothing(ros2_workspace: Work
         assert clerk.ended(goal) == ("cancelled", {"missed_waypoints": [1, 0]})
         lost = clerk.tour(1)
         assert clerk.accepted(lost)
+        # The node has received the request for the result before this feedback is back.
+        clerk.tell("arrival")
+        clerk.world.wait("feedback", value=lost)
         clerk.change(Transition.DEACTIVATE, Transition.CLEAN_UP)
         assert clerk.ended(lost) == ("aborted", {"missed_waypoints": []})
         assert "/tour: the goal is aborted because this node ends" in clerk.output()

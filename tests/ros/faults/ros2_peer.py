@@ -160,9 +160,9 @@ class Ros:
 
         def decided(future):
             sent.handle = future.result()
-            accepted(sent.handle.accepted)
             if sent.handle.accepted:
                 sent.handle.get_result_async().add_done_callback(finished)
+            accepted(sent.handle.accepted)
 
         def finished(future):
             ended(ENDS[future.result().status], future.result().result)
