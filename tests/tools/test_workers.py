@@ -76,7 +76,9 @@ def test_the_processes_are_gone_after_the_last_result_and_after_a_stop() -> None
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux signals the end of a parent")
 @pytest.mark.parametrize("ending", [signal.SIGTERM, signal.SIGHUP, signal.SIGKILL])
 def test_the_processes_end_with_their_parent(ending: signal.Signals, tmp_path: Path) -> None:
-    script = "import sys; from tests.tools.test_workers import *; list(completed(wait, [sys.argv[1]] * 2, 2))"
+    # `nohup` ignores hangups for all processes that it starts.
+    script = "import sys; from tests.tools.test_workers import *; signal.signal(signal.SIGHUP, signal.SIG_DFL); "
+    script += "list(completed(wait, [sys.argv[1]] * 2, 2))"
     with subprocess.Popen([sys.executable, "-c", script, str(tmp_path)], cwd=Path(__file__).parents[2]) as parent:
         while len(pids := [int(file.name) for file in tmp_path.iterdir()]) < 2:
             assert parent.poll() is None
