@@ -918,7 +918,7 @@ def test_a_saved_assumption_that_does_not_fit(tmp_path: Path) -> None:
     files = xmi.generate(Models(model), Configuration())
     path = tmp_path / "Shop.sct.xmi"
     path.write_text(files[path.name])
-    with pytest.raises(ModelError, match="'assumption_A1' needs one location, and edges for responses and feedback"):
+    with pytest.raises(ModelError, match="'assumption_A1' needs one location, and edges for data from the robot only"):
         validity.load(path)
 
 

@@ -107,7 +107,7 @@ CANCELING = "canceling"
 #: The controller serves a request that it has not answered yet.
 OPEN = "open"
 #: Locations in which a service or action is running: from its request until its end is known.
-RUNNING = (WAITING, EXECUTING, CANCELING, OPEN)
+RUNNING = (OPEN, WAITING, EXECUTING, CANCELING)
 #: Word after the name of a service or action that reads whether it is running.
 RUNNING_WORD = "running"
 #: Names of events, in the order in which the language lists them.

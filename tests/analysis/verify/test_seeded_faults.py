@@ -174,7 +174,7 @@ LOOP: dict[str, Fault] = {
         "timeout of `First` after 700 ms without Second.heard in line 11, timeout of `First` after 1 s without",
     ),
     "messages to one topic do not exclude each other": (
-        *(_ROLES, "_by_source(self.triggers) if len(events) > 1", "_by_source(self.triggers) if False", "Pairs"),
+        *(_ROLES, "_by_source(messages) if len(events) > 1", "_by_source(messages) if False", "Pairs"),
         "request to `First.left`, request to `First.right` exclude each other in a round by the text, and not in th",
     ),
     "a service starts again in a tick": (
@@ -217,8 +217,8 @@ LOOP: dict[str, Fault] = {
     "the node calls another server": (
         *(
             _NODE,
-            "port.instance.topic(port.communication)\n        client.interface",
-            "port.communication.name\n        client.interface",
+            "user.identifier = port.instance.topic(port.communication)",
+            "user.identifier = port.communication.name",
             "Pairs",
         ),
         "`First.help` is `/help` in ROS by the text, and `help` in the node",

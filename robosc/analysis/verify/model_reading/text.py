@@ -592,16 +592,17 @@ class _TextReading:
     def provided_constant(self, statement: robosc.ProvideStatement, place: Environment) -> ProvidedConstant:
         """Return a statement with the inputs that its command has if it sends these data."""
         event_name = self.provided_event(statement, place)
-        trigger = self.machine.events[event_name]
+        sender = self.machine.events.get(event_name)
         sent = constant_data(statement.data, place, self.names)
         if sent is None:
             return ProvidedConstant(statement, None)
         declared = self.carried_type(event_name)
         inputs: dict[str, Value] = {}
-        for name, part in trigger.parts.items():
+        # No transition names the response if a goal always ends otherwise.
+        for name, part in sender.parts.items() if sender else ():
             value = computed_input(part, sent, declared, self.names)
             if value is not None:
-                inputs[name] = saturate(value, trigger.inputs[name])
+                inputs[name] = saturate(value, sender.inputs[name])
         return ProvidedConstant(statement, inputs)
 
     # Assumptions
