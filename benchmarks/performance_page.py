@@ -98,8 +98,8 @@ In a compiled node, the C of the supervisor takes {engine} microseconds of a tic
 WATCHED = """\
 ## Observers
 
-The page of [`robosc view`](view.md) or a monitor on [`/diagnostics`](ros-output.md#diagnostics) costs a node at
-most {most} of a core (measured: {kinds}). `robosc view` and the monitor themselves run in processes of their own.
+The page of [`robosc view`](view.md) or a monitor on [`/diagnostics`](ros-output.md#diagnostics) costs a node
+{most} of a core (measured: {kinds}). `robosc view` and the monitor themselves run in processes of their own.
 """
 
 
@@ -127,7 +127,8 @@ def page(results: Results) -> str:
         parts.append(COSTS.format(seconds=seconds, table=_costs(costs), engine=_engine(costs)))
     if seen:
         most = max(share for measured in seen.values() for share in measured["more"].values())
-        parts.append(WATCHED.format(most=f"{100 * most:.1f} %", kinds="; ".join(kind.title for kind in seen)))
+        share = f"at most {100 * most:.1f} %" if most >= 0.001 else "less than 0.1 %"
+        parts.append(WATCHED.format(most=share, kinds="; ".join(kind.title for kind in seen)))
     return "\n".join(parts)
 
 
