@@ -320,7 +320,7 @@ class _Findings:
         plant = observed.plant
         ends = [event for event in plant.events if event.kind in ENDING_ANSWERS]
         is_action = plant.kind == sct.PlantKind.actionServer
-        what, never = ("goal", "never ends") if is_action else ("request", "is never answered")
+        what, word = ("goal", "end") if is_action else ("request", "be answered")
         named = join_with_and([f"`{words(event).partition(' ')[0]} to {reference(plant)}`" for event in ends])
         possible = f"{named} can{'not' if len(ends) == 1 else ' no longer'} happen"
         why = f"no transition names `response to {reference(plant)}`{' or another end' * is_action}"
@@ -330,7 +330,7 @@ class _Findings:
         return _finding(
             plant,
             "goal-never-ends",
-            f"a {what} of `{name(plant)}` possibly {never}: {why}",
+            f"a {what} of `{name(plant)}` may never {word}: {why}",
             f"write {' or '.join(written)} in the states in which it is then open",
         )
 
