@@ -596,10 +596,11 @@ class _TextReading:
         sent = constant_data(statement.data, place, self.names)
         if sent is None:
             return ProvidedConstant(statement, None)
+        if sender is None:  # No transition names the response: each goal ends otherwise.
+            return ProvidedConstant(statement, {})
         declared = self.carried_type(event_name)
         inputs: dict[str, Value] = {}
-        # No transition names the response if a goal always ends otherwise.
-        for name, part in sender.parts.items() if sender else ():
+        for name, part in sender.parts.items():
             value = computed_input(part, sent, declared, self.names)
             if value is not None:
                 inputs[name] = saturate(value, sender.inputs[name])
