@@ -40,10 +40,7 @@ class Countdown {
   /// The same on another clock.
   Countdown(rclcpp::Clock::SharedPtr clock, const CallbackGuard& guard, std::chrono::milliseconds time,
             std::function<void()> over)
-      : over_(std::move(over)),
-        time_(time),
-        clock_(std::move(clock)),
-        beat_(guard.at_each_beat([this] { look(); })) {}
+      : over_(std::move(over)), time_(time), clock_(std::move(clock)), beat_(guard.at_each_beat([this] { look(); })) {}
 
   Countdown(const Countdown&) = delete;
   Countdown& operator=(const Countdown&) = delete;
