@@ -23,7 +23,7 @@ from robosc.base.diagnostics import Diagnostic, Severity, in_order
 from robosc.model import sct
 from robosc.model.places import place
 from robosc.model.reflection import tree
-from robosc.model.semantics.communication import ANSWERS, ENDING_ANSWERS
+from robosc.model.semantics.communication import ANSWERS, ENDING_ANSWERS, event_word
 from robosc.model.semantics.edges import edges_from, edges_of
 from robosc.model.semantics.roles import plant_of
 from robosc.synthesis.encoding import referenced_elements
@@ -177,8 +177,7 @@ class _Findings:
             why, hint = _guard(event), "correct its guard or the transitions to its state"
         else:
             why = _not_requested(observed)
-            word = words(event).partition(" ")[0] if event.kind in ANSWERS else "request"
-            hint = f"write `on {word} to {reference(plant)}` in a state that can be reached"
+            hint = f"write `on {event_word(event)} to {reference(plant)}` in a state that can be reached"
         required = () if observed.kept_away else observed.requirements
         at_fault = required or (observed.counterexample and observed.counterexample.violated) or ()
         return _finding(
@@ -321,7 +320,7 @@ class _Findings:
         ends = [event for event in plant.events if event.kind in ENDING_ANSWERS]
         is_action = plant.kind == sct.PlantKind.actionServer
         what, word = ("goal", "end") if is_action else ("request", "be answered")
-        named = join_with_and([f"`{words(event).partition(' ')[0]} to {reference(plant)}`" for event in ends])
+        named = join_with_and([f"`{event_word(event)} to {reference(plant)}`" for event in ends])
         possible = f"{named} can{'not' if len(ends) == 1 else ' no longer'} happen"
         why = f"no transition names `response to {reference(plant)}`{' or another end' * is_action}"
         if ends:
@@ -458,7 +457,7 @@ def _subject(event: sct.Event) -> str:
 def _named(event: sct.Event) -> str:
     """Return the name of a command for `robosc explain`."""
     plant = name(plant_of(event))
-    return f"{plant}.{words(event).partition(' ')[0]}" if event.kind in ANSWERS else plant
+    return f"{plant}.{event_word(event)}" if event.kind in ANSWERS else plant
 
 
 def _is_named(event: sct.Event) -> bool:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from robosc.base.files.json_reading import JsonError, json_value
 from robosc.model import expression as ex
 from robosc.model import sct
-from robosc.model.semantics.communication import ANSWERS, REQUESTS
+from robosc.model.semantics.communication import ANSWERS, REQUESTS, event_word
 from robosc.model.semantics.naming import output_name
 from robosc.model.semantics.roles import Roles, event_name, plant_of
 from robosc.synthesis.decoding import text, value
@@ -65,7 +65,7 @@ def _event_names(event: sct.Event) -> Iterator[str]:
     if plant.kind == sct.PlantKind.data:
         return
     owners = [plant.name, *_plant_names(plant)]
-    kind = event.name[2:] if event.kind in (*ANSWERS, *REQUESTS) else event.kind.name
+    kind = event_word(event) if event.kind in (*ANSWERS, *REQUESTS) else event.kind.name
     numbered = event.kind in (sct.EventKind.tau, sct.EventKind.timeout)
     suffixes = [event.name] if numbered else [event.name, kind]
     if event.kind == sct.EventKind.trigger:

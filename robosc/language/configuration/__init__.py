@@ -197,7 +197,7 @@ def _lifecycle(value: Any) -> Any:
     if isinstance(value, bool):
         return {} if value else None
     if not isinstance(value, dict):
-        raise ValueError('must be true, false or an object, such as {"bond": true}')  # noqa: TRY004
+        raise ValueError('must be true, false or an object, such as {"bond": true}')  # noqa: TRY004  # pydantic reports it
     return value
 
 

@@ -13,7 +13,7 @@ from robosc.language.recovery import recover
 from robosc.language.spellings import WRONG_FOLDER, parse_text, wrong_folder
 from robosc.language.tokens import Tokens, too_complex
 from robosc.model import robosc as rsc
-from robosc.model.semantics.communication import section_of
+from robosc.model.semantics.communication import ros_kind, section_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -53,11 +53,11 @@ def _wrong_folders(text: Text, builder: Builder) -> Iterator[Diagnostic]:
     """Yield a finding for each folder in the name of a ROS type without which the text would be correct."""
     interfaces = {element.name: element for element in builder.declared if isinstance(element, rsc.Interface)}
     for element, names in builder.references.items():
-        kind, named = type(element).__name__.removeprefix("Outgoing").lower(), element
+        named: rsc.InterfaceTypeReference | rsc.Interface
         if isinstance(element, rsc.InterfaceTypeReference):
-            kind = section_of(element).kind
+            kind, named = section_of(element).kind, element
         elif isinstance(element, rsc.CommunicationType) and names["interface"].text in interfaces:
-            named = interfaces[names["interface"].text]
+            kind, named = ros_kind(element), interfaces[names["interface"].text]
         else:
             continue
         message = wrong_folder(text, named, kind)

@@ -132,6 +132,11 @@ def is_sensor_data(package: str) -> bool:
     return package == "sensor_msgs"
 
 
+def event_word(event: sct.Event) -> str:
+    """Return the word of the language for an event of a communication, such as `request`; empty for a reset."""
+    return next(row.name for rows in EVENTS.values() for row in rows if row.kind == event.kind)
+
+
 def ros_kind(communication: robosc.CommunicationType) -> str:
     """Return `message`, `service` or `action`."""
     return type(communication).__name__.removeprefix("Outgoing").lower()

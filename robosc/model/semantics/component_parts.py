@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeVar
 
 from robosc.model import rosgraph, sct
+from robosc.model.semantics.communication import event_word
 from robosc.model.semantics.definition import reported_variables
 from robosc.model.semantics.roles import component_name
 
@@ -81,8 +82,7 @@ def answers(server: rosgraph.ServiceServer | rosgraph.ActionServer) -> dict[str,
 
 def request(sending: rosgraph.Sending) -> str:
     """Return the model's name for the event of a command: `request to move`, or `response to start` of a server."""
-    word = "request" if sending.event.kind == sct.EventKind.trigger else sending.event.name.removeprefix("c_")
-    return f"{word} to {sending.name}"
+    return f"{event_word(sending.event)} to {sending.name}"
 
 
 def _grouped(owned: Iterable[tuple[str, _Element]]) -> dict[str, list[_Element]]:
