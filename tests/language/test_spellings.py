@@ -147,9 +147,13 @@ def test_the_type_of_an_interface(written: str, usual: str) -> None:
     assert (interface.package, interface.type) == ("std_srvs", "Trigger")
 
 
-def test_the_wrong_folder_of_an_interface_is_reported_where_it_is_linked() -> None:
+@pytest.mark.parametrize("kind", ["service call", "outgoing service call"])
+def test_the_wrong_folder_of_an_interface_is_reported_where_it_is_linked(kind: str) -> None:
     content = gate(definitions="interface ask use msg/Trigger from std_srvs", link="links ask")
+    content = content.replace("service call", kind)
     assert messages(content) == ["`msg` holds no types of the kind service, expected `srv`"]
+    _, findings = format_text(Text("gate.rscd", content))
+    assert [finding.message for finding in findings] == messages(content)
 
 
 def test_a_division_by_a_name_like_a_folder_stays() -> None:
