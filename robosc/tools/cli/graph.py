@@ -6,12 +6,15 @@ from typing import TYPE_CHECKING
 
 import click
 
+from robosc.base.diagnostics.visible import visible
 from robosc.base.files.writing import refuse, write_file
 from robosc.tools.cli import CallError, put
 from robosc.tools.cli.options import FILE
 from robosc.tools.cli.progress import progress
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from robosc.base.node_graph import NodeGraph
 
 #: Value of options that reads the graph from ROS 2.
@@ -53,6 +56,14 @@ def node_graph(source: str) -> NodeGraph:
             return read_running()
     except StartError as error:
         raise CallError(f"{error}\n  {error.hint}" if error.hint else str(error)) from error
+
+
+def require_nodes(graph: NodeGraph, patterns: Sequence[str]) -> None:
+    """Raise CallError for a pattern that names no node of a graph."""
+    for pattern in patterns:
+        if not graph.named([pattern]):
+            names = ", ".join(visible(node.name) for node in graph.nodes)
+            raise CallError(f"the graph has no node {visible(pattern)}; it has {names or 'no nodes'}")
 
 
 @click.command("graph")

@@ -21,7 +21,7 @@ from robosc.base.diagnostics.visible import visible
 from robosc.base.files.writing import refuse, write_file
 from robosc.language.configuration.names import configured_names
 from robosc.tools.cli import ERRORS_FOUND, CallError, interruption, put, say
-from robosc.tools.cli.graph import LIVE, GraphSource, node_graph, robot_nodes
+from robosc.tools.cli.graph import LIVE, GraphSource, node_graph, require_nodes, robot_nodes
 from robosc.tools.cli.options import Paths, configuration, jobs, model, paths, require_own_synthesis, synthesizer
 from robosc.tools.cli.progress import progress
 from robosc.tools.cli.reading import read_configuration, read_models, supervise_models
@@ -34,7 +34,6 @@ if TYPE_CHECKING:
 
     from robosc.analysis.passages import Passage, Passages
     from robosc.analysis.verify import Verdict
-    from robosc.base.node_graph import NodeGraph
     from robosc.language.configuration import Configuration
     from robosc.m2t.models import Models
     from robosc.model import sct
@@ -155,9 +154,7 @@ def _verify_guard(model: str, chosen: str | None, paths: Paths, call: _GuardCall
         if call.source != LIVE:
             report.may_quote(call.source)
         nodes = node_graph(call.source)
-    for pattern in call.robot:
-        if not nodes.named([pattern]):
-            raise CallError(f"the graph has no node {visible(pattern)}: {_nodes_in_words(nodes)}")
+    require_nodes(nodes, call.robot)
     layer = settings.layer_name(models.rosgraph)
     with configured_names(models.rosgraph, settings):
         found = passages(models.rosgraph, nodes, layer, call.robot, call.exceptions)
@@ -171,11 +168,6 @@ def _verify_guard(model: str, chosen: str | None, paths: Paths, call: _GuardCall
         _show_passages(models.sct.name, layer, found)
     if not found.is_complete:
         raise click.exceptions.Exit(ERRORS_FOUND)
-
-
-def _nodes_in_words(nodes: NodeGraph) -> str:
-    names = [visible(node.name) for node in nodes.nodes]
-    return f"it has {', '.join(names)}" if names else "it has no nodes"
 
 
 def _guard_cases(robot: str, found: Passages, file: str) -> list[as_junit_xml.TestCase]:
