@@ -193,6 +193,9 @@ class ControllerPort(Port, Protocol):
         A single server of the right type may be left out.
         """
 
+    def calling_nodes(self, client: Client) -> Sequence[str]:
+        """Return the other nodes that call a service or send goals to an action."""
+
     def endpoints(self) -> Mapping[rosgraph.Subscription | rosgraph.Publisher, list[Endpoint]]:
         """Return the other publishers on the node's topics, and the subscriptions to its own publishers."""
 

@@ -87,9 +87,11 @@ def _reason(graph: NodeGraph, own: Sequence[Node], endpoint: tuple[str, str, str
 
 def _passed_on(kind: str, name: str, nodes: Sequence[Node]) -> str | None:
     """Return why a topic of commands does not lead to the robot, or None if it does."""
-    ends = [node for node in nodes if name in node.taken(kind) and not _passes_on(node)]
-    return None if kind == "action" or ends else "its nodes pass commands on"
+    ends = [node for node in nodes if name in node.taken(kind) and not _passes_on(kind, name, node)]
+    return None if ends else "its nodes pass commands on"
 
 
-def _passes_on(node: Node) -> bool:
-    return any(known in COMMAND_TYPES["topic"] for types in node.publishers.values() for known in types)
+def _passes_on(kind: str, name: str, node: Node) -> bool:
+    """Return whether a node also sends commands: of any type on topics, of the same type to actions."""
+    sent = COMMAND_TYPES[kind] if kind == "topic" else node.taken(kind)[name]
+    return any(known in sent for types in node.sent(kind).values() for known in types)
