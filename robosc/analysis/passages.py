@@ -139,17 +139,17 @@ def passages(
     )
     own = [node for node in own if node not in layers]
     endpoints = sorted({*guarded, *endpoints_of(own)}, key=lambda each: (KINDS.index(each[0]), each[1]))
-    found = []
+    result = []
     for kind, name in endpoints:
         if any(matches(name, pattern) for pattern in exceptions):
             continue
         if (kind, name) in guarded:
             type_name, model_name = guarded[kind, name]
             inside = [f"{node.name}/{below_layer(model_name)}" for node in layers]
-            found.append(_guarded((kind, name, type_name), inside, layers, others))
+            result.append(_guarded((kind, name, type_name), inside, layers, others))
         elif not (kind == "topic" and name in heard):
-            found.append(_unguarded(kind, name, own, others))
-    return Passages([node.name for node in layers], [node.name for node in own], found)
+            result.append(_unguarded(kind, name, own, others))
+    return Passages([node.name for node in layers], [node.name for node in own], result)
 
 
 def commands(graph: rosgraph.RosGraph) -> list[tuple[str, str, str]]:

@@ -56,7 +56,7 @@ def test_nodes_that_go_around_are_reported(layers: Workspace | Runner, tmp_path:
             assert done.returncode == 1, done.stderr
             passages = json.loads(done.stdout)["passages"]
             found = {each["name"]: each["around"] for each in passages if each["outcome"] == "around"}
-            assert found == dict.fromkeys(["/speed", "/lamp/light", "/go_to"], ["/intruder"])
+            assert found == {name: ["/intruder"] for name in ("/speed", "/lamp/light", "/go_to")}
         assert intruder.process.stdin is not None
         intruder.process.stdin.close()
         processes.wait_until(lambda: around() == set(), "the layer is alone again")

@@ -2,7 +2,8 @@
 
 import json
 import re
-from typing import Annotated, Any
+from collections.abc import Callable
+from typing import Annotated
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
@@ -15,19 +16,28 @@ from robosc.base.node_graph import PARTS, NodeGraph, node_graph
 RULE = "node-graph"
 
 
-def _text(pattern: str, meaning: str) -> Any:
-    """Return the type of a string with a pattern, for messages and for the schema."""
+def _requires(pattern: str, meaning: str) -> Callable[[str], str]:
+    """Return a check of a text that raises ValueError with the meaning of the pattern."""
 
     def check(text: str) -> str:
         if not re.fullmatch(pattern, text):
             raise ValueError(f"must be {meaning}")
         return text
 
-    return Annotated[str, AfterValidator(check), Field(json_schema_extra={"pattern": f"^{pattern}$"})]
+    return check
 
 
-_Name = _text("(/[A-Za-z0-9_]+)+", "a full name, such as /cmd_vel")
-_Type = _text("[A-Za-z0-9_]+(/(msg|srv|action))?/[A-Za-z0-9_]+", "a type, such as geometry_msgs/Twist")
+_NAME, _TYPE = "(/[A-Za-z0-9_]+)+", "[A-Za-z0-9_]+(/(msg|srv|action))?/[A-Za-z0-9_]+"
+_Name = Annotated[
+    str,
+    AfterValidator(_requires(_NAME, "a full name, such as /cmd_vel")),
+    Field(json_schema_extra={"pattern": f"^{_NAME}$"}),
+]
+_Type = Annotated[
+    str,
+    AfterValidator(_requires(_TYPE, "a type, such as geometry_msgs/Twist")),
+    Field(json_schema_extra={"pattern": f"^{_TYPE}$"}),
+]
 _Types = dict[_Name, list[_Type]]
 
 

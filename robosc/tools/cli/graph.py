@@ -9,36 +9,13 @@ import click
 from robosc.base.diagnostics.visible import visible
 from robosc.base.files.writing import refuse, write_file
 from robosc.tools.cli import CallError, put
-from robosc.tools.cli.options import FILE
+from robosc.tools.cli.options import LIVE
 from robosc.tools.cli.progress import progress
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from robosc.base.node_graph import NodeGraph
-
-#: Value of options that reads the graph from ROS 2.
-LIVE = "live"
-
-
-class GraphSource(click.ParamType):
-    """A JSON file with a graph, or `live`."""
-
-    name = "graph"
-
-    def convert(self, value: str, param: click.Parameter | None, ctx: click.Context | None) -> str:
-        """Return the path of an existing file, or `live`."""
-        return value if value == LIVE else str(FILE.convert(value, param, ctx))
-
-    def get_metavar(self, param: click.Parameter, ctx: click.Context | None = None) -> str:
-        """Return the text in the place of the value in `--help`."""
-        return "FILE|live"
-
-
-#: Names of the nodes that are the robot, for commands with a graph.
-robot_nodes = click.option(
-    "--robot", "robot", multiple=True, metavar="NODE", help="Node of the robot, with `*` for any text; repeatable."
-)
 
 
 def node_graph(source: str) -> NodeGraph:

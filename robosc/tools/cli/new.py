@@ -15,8 +15,8 @@ from robosc.base.ros_types import RosTypes
 from robosc.language.formatting import format_text
 from robosc.language.text import Text
 from robosc.tools.cli import CallError, say
-from robosc.tools.cli.graph import LIVE, GraphSource, node_graph, require_nodes, robot_nodes
-from robosc.tools.cli.options import Paths
+from robosc.tools.cli.graph import node_graph, require_nodes
+from robosc.tools.cli.options import GRAPH, LIVE, Paths, robot_nodes
 from robosc.tools.cli.reading import read
 from robosc.tools.cli.report import Report
 from robosc.tools.starter import Choices, files
@@ -87,7 +87,8 @@ _NONE = "-"
     "source",
     is_flag=False,
     flag_value=LIVE,
-    type=GraphSource(),
+    type=GRAPH,
+    metavar="FILE|live",
     help="Read the commands of the robot from a ROS graph: the running one, or that of a JSON file (`robosc graph`).",
 )
 @robot_nodes
@@ -112,17 +113,17 @@ def command(name: str, folder: str | None, yes: bool, guard: bool, **options: An
     _refuse_options(guard, options)
     asks = not yes and _on_terminal()
     if guard:
-        choices: Choices | GuardChoices = _guard_choices(name, options, asks=asks)
-        texts = dict(guard_files(choices, RosTypes()))
+        guarded = _guard_choices(name, options, asks=asks)
+        stem, texts = guarded.stem, dict(guard_files(guarded, RosTypes()))
     else:
         # Reject invalid names in the call before any prompt.
         _choices(name, options)
         choices = _choices(name, _ask(options) if asks else options)
-        texts = dict(files(choices))
-    target = Path(folder or choices.stem)
+        stem, texts = choices.stem, dict(files(choices))
+    target = Path(folder or stem)
     if os.path.lexists(target) and (not target.is_dir() or any(target.iterdir())):
         raise CallError(f"{visible(str(target))} exists already and is not overwritten; choose another folder with -o")
-    model = f"{choices.stem}.rscd"
+    model = f"{stem}.rscd"
     laid_out, _ = format_text(Text(model, texts[model]))
     assert laid_out is not None
     write({target: texts | {model: laid_out}})
@@ -193,8 +194,8 @@ def _guard_choices(name: str, options: dict[str, Any], *, asks: bool) -> GuardCh
 
 def _check_guard(name: str, chosen: dict[str, Any]) -> GuardChoices:
     """Return the choices for a guard. Raises CallError for a fault, except that a command may be missing."""
-    given = {choice: value for choice, value in chosen.items() if value and value != _NONE}
-    choices = GuardChoices(name, **given)
+    own = {choice: value for choice, value in chosen.items() if value and value != _NONE}
+    choices = GuardChoices(name, **own)
     fault = choices.fault()
     if fault is not None and any(chosen[choice] for choice in _COMMANDS):
         raise CallError(fault)

@@ -21,8 +21,19 @@ from robosc.base.diagnostics.visible import visible
 from robosc.base.files.writing import refuse, write_file
 from robosc.language.configuration.names import configured_names
 from robosc.tools.cli import ERRORS_FOUND, CallError, interruption, put, say
-from robosc.tools.cli.graph import LIVE, GraphSource, node_graph, require_nodes, robot_nodes
-from robosc.tools.cli.options import Paths, configuration, jobs, model, paths, require_own_synthesis, synthesizer
+from robosc.tools.cli.graph import node_graph, require_nodes
+from robosc.tools.cli.options import (
+    GRAPH,
+    LIVE,
+    Paths,
+    configuration,
+    jobs,
+    model,
+    paths,
+    require_own_synthesis,
+    robot_nodes,
+    synthesizer,
+)
 from robosc.tools.cli.progress import progress
 from robosc.tools.cli.reading import read_configuration, read_models, supervise_models
 from robosc.tools.cli.report import Report
@@ -60,7 +71,8 @@ _WIDTH = 120
 @click.option(
     "--guard",
     "source",
-    type=GraphSource(),
+    type=GRAPH,
+    metavar="FILE|live",
     help="Prove nothing; print the commands that go around the layer in a ROS graph: that of a JSON file (`robosc"
     " graph`), or the running one.",
 )
@@ -157,20 +169,20 @@ def _verify_guard(model: str, chosen: str | None, paths: Paths, call: _GuardCall
     require_nodes(nodes, call.robot)
     layer = settings.layer_name(models.rosgraph)
     with configured_names(models.rosgraph, settings):
-        found = passages(models.rosgraph, nodes, layer, call.robot, call.exceptions)
+        ways = passages(models.rosgraph, nodes, layer, call.robot, call.exceptions)
     if call.junit:
         write_file(
-            call.junit, as_junit_xml.render("robosc verify --guard", _guard_cases(models.sct.name, found, model))
+            call.junit, as_junit_xml.render("robosc verify --guard", _guard_cases(models.sct.name, ways, model))
         )
     if call.as_object:
-        put(found.as_json(models.sct.name), nl=False)
+        put(ways.as_json(models.sct.name), nl=False)
     else:
-        _show_passages(models.sct.name, layer, found)
-    if not found.is_complete:
+        _show_passages(models.sct.name, layer, ways)
+    if not ways.is_complete:
         raise click.exceptions.Exit(ERRORS_FOUND)
 
 
-def _guard_cases(robot: str, found: Passages, file: str) -> list[as_junit_xml.TestCase]:
+def _guard_cases(robot: str, ways: Passages, file: str) -> list[as_junit_xml.TestCase]:
     return [
         as_junit_xml.TestCase(
             robot,
@@ -180,14 +192,14 @@ def _guard_cases(robot: str, found: Passages, file: str) -> list[as_junit_xml.Te
             failure=as_junit_xml.Failure(passage.evidence, passage.outcome.value, "") if passage.is_open else None,
             output=f"{passage.outcome.value}: {passage.evidence}",
         )
-        for passage in found.passages
+        for passage in ways.passages
     ]
 
 
-def _show_passages(robot: str, layer: str, found: Passages) -> None:
+def _show_passages(robot: str, layer: str, ways: Passages) -> None:
     rows = [
         (f"{passage.kind} {passage.name}", (passage.outcome.value, _style(passage)), passage.evidence)
-        for passage in found.passages
+        for passage in ways.passages
     ]
     table = Table()
     for heading in ("to the robot", "verdict", "nodes"):
@@ -195,10 +207,10 @@ def _show_passages(robot: str, layer: str, found: Passages) -> None:
     for name, outcome, evidence in rows:
         table.add_row(Text(visible(name)), Text(*outcome), Text(visible(evidence)))
     _console().print(table)
-    if not found.layers:
+    if not ways.layers:
         say(f"\nthe graph has no node {layer}: start the layer, or no command passes it")
-    around = sum(passage.is_open for passage in found.passages)
-    passing = sum(passage.outcome is Passed.PASSES for passage in found.passages)
+    around = sum(passage.is_open for passage in ways.passages)
+    passing = sum(passage.outcome is Passed.PASSES for passage in ways.passages)
     say(f"\n{robot}: {around} around the layer, {passing} through it")
 
 

@@ -6,7 +6,7 @@ import time
 from typing import TYPE_CHECKING, Any
 
 from robosc.base.node_graph import NodeGraph, node_graph
-from robosc.run.runtime.ros2.node import NodeNameNonExistentError, start
+from robosc.run.runtime.ros2.node import start
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -25,7 +25,7 @@ def read_running() -> NodeGraph:
 
     The reader itself is left out. Raises StartError if ROS 2 does not start.
     """
-    import rclpy  # noqa: PLC0415  # `start` has reported whether it is missing
+    import rclpy  # noqa: PLC0415  # `start` reports whether it is missing
 
     node = start(_NAME, [])
     try:
@@ -59,6 +59,8 @@ def _topics(node: Any) -> Iterator[Endpoint]:
 
 
 def _services(node: Any) -> Iterator[Endpoint]:
+    from rclpy.node import NodeNameNonExistentError  # noqa: PLC0415
+
     for name, space in node.get_node_names_and_namespaces():
         try:
             served = node.get_service_names_and_types_by_node(name, space)

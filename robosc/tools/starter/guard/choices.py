@@ -82,15 +82,15 @@ class GuardChoices:
     def commands(self) -> list[Command]:
         """The topics, services and actions of the robot. Precondition: `fault` returns None."""
         taken = {*ROBOSC_KEYWORDS, *ROBOSC_FUNCTIONS, *ROBOSC_QUANTIFIERS, *_TAKEN}
-        found = []
+        commands = []
         for kind, text in self._named:
             name, _, type_name = text.partition(":")
             match = _TYPE.fullmatch(type_name)
             assert match
             word = _word(name, taken)
             taken.add(word)
-            found.append(Command(kind, name, match[1], match[3], word))
-        return found
+            commands.append(Command(kind, name, match[1], match[3], word))
+        return commands
 
     @property
     def velocities(self) -> list[Command]:

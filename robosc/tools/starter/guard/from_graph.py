@@ -72,8 +72,8 @@ def suggestion(graph: NodeGraph, robot: Sequence[str]) -> Suggestion:
             chosen[kind].append(f"{name}:{type_name}")
     poses = [name for node in graph.nodes for name, types in node.publishers.items() if _POSE in types]
     poses = sorted(name for name in poses if not name.endswith("initialpose"))
-    commands = (tuple(chosen[kind]) for kind in KINDS)
-    return Suggestion(*commands, poses[0] if poses else None, tuple(left_out))
+    topics, services, actions = (tuple(chosen[kind]) for kind in KINDS)
+    return Suggestion(topics, services, actions, poses[0] if poses else None, tuple(left_out))
 
 
 def _reason(graph: NodeGraph, own: Sequence[Node], endpoint: tuple[str, str, str]) -> str | None:

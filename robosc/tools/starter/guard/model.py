@@ -128,8 +128,8 @@ def _limit(command: Command) -> str:
     path = VELOCITIES[command.ros_type]
     vectors = []
     for vector, most in (("linear", "max_speed"), ("angular", "max_turn")):
-        read = ".".join(["value", *path, vector])
-        fields = ", ".join(f"{axis}: within({read}.{axis}, {most})" for axis in "xyz")
+        source = ".".join(["value", *path, vector])
+        fields = ", ".join(f"{axis}: within({source}.{axis}, {most})" for axis in "xyz")
         vectors.append(f"{vector}: {{ {fields} }}")
     data = f"{{ {', '.join(vectors)} }}"
     for outer in reversed(path):
