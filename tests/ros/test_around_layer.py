@@ -26,7 +26,8 @@ def test_nodes_that_go_around_are_reported(layers: Workspace | Runner, tmp_path:
     folder = tmp_path / "run"
     with middleware(layers, folder) as processes:
         processes.start("layer", command(layers))
-        world, intruder = (Peer(processes, layers.ros.python, 2, name) for name in ("world", "intruder"))
+        names = ("world", "server", "intruder")
+        world, server, intruder = (Peer(processes, layers.ros.python, 2, name) for name in names)
 
         def statuses() -> list[dict[str, Any]]:
             """Return the statuses of the layer in its last report."""
@@ -38,8 +39,10 @@ def test_nodes_that_go_around_are_reported(layers: Workspace | Runner, tmp_path:
             faults = {text for status in statuses() for text in status["message"].split("; ")}
             return {text for text in faults if "around" in text}
 
-        world.do("serve", name="/lamp/light", kind=SET)
-        world.do("act", name="/go_to", kind=GO)
+        server.do("answer_at_once", fields={"success": True})
+        server.do("accept_at_once", accept=True, succeed=True)
+        server.do("serve", name="/lamp/light", kind=SET)
+        server.do("act", name="/go_to", kind=GO)
         world.do("listen", topic="/speed", kind=FLOAT)
         world.do("listen", topic=DIAGNOSTICS, kind="diagnostic_msgs/DiagnosticArray")
         processes.wait_until(lambda: bool(statuses()), "the layer reports")
@@ -57,8 +60,7 @@ def test_nodes_that_go_around_are_reported(layers: Workspace | Runner, tmp_path:
             passages = json.loads(done.stdout)["passages"]
             found = {each["name"]: each["around"] for each in passages if each["outcome"] == "around"}
             assert found == {name: ["/intruder"] for name in ("/speed", "/lamp/light", "/go_to")}
-        assert intruder.process.stdin is not None
-        intruder.process.stdin.close()
-        processes.wait_until(lambda: around() == set(), "the layer is alone again")
+        intruder.do("withdraw", topic="/speed")
+        processes.wait_until(lambda: around() == set(AROUND[1:]), "the topic has one publisher again")
         log = (folder / "layer.log").read_text()
         assert [log.count(text) for text in AROUND] == [1, 1, 1]

@@ -1,6 +1,7 @@
 """Guards: `robosc new --guard`, and `robosc verify --guard` on the graphs of files."""
 
 import json
+import sys
 from itertools import chain
 from pathlib import Path
 from xml.etree import ElementTree
@@ -244,3 +245,18 @@ def test_verify_reports_wrong_calls_and_graphs(run: Run, tmp_path: Path) -> None
     graph.write_text(layer_graph())
     assert "the graph has no node /nase" in run("verify", model, "--guard", graph, "--robot", "/nase").stderr
     assert run("verify", model, "--guard", "nowhere.json").exit_code == 2
+
+
+@pytest.mark.parametrize(
+    "call", [("graph",), ("graph", "-o", "graph.json"), ("new", "Porter", "--guard", "--yes", "--from-graph")]
+)
+def test_a_running_graph_needs_ros(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, call: tuple[str, ...]
+) -> None:
+    monkeypatch.setitem(sys.modules, "rclpy", None)
+    for module in ("node", "node_graph"):
+        monkeypatch.delitem(sys.modules, f"robosc.run.runtime.ros2.{module}", raising=False)
+    answer = run(*call)
+    assert answer.exit_code == 2
+    assert "this Python has no ROS 2" in answer.stderr
+    assert list(tmp_path.iterdir()) == []
