@@ -98,7 +98,7 @@ class GraphMonitor {
     std::string service;
     std::string type;
     std::string verb;  ///< What other clients do that go around a layer. Empty: they may.
-    int twice = 0;  ///< Number of checks with two servers of one name.
+    int twice = 0;     ///< Number of checks with two servers of one name.
   };
 
   void look() {
