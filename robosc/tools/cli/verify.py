@@ -171,9 +171,7 @@ def _verify_guard(model: str, chosen: str | None, paths: Paths, call: _GuardCall
     with configured_names(models.rosgraph, settings):
         ways = passages(models.rosgraph, nodes, layer, call.robot, call.exceptions)
     if call.junit:
-        write_file(
-            call.junit, as_junit_xml.render("robosc verify --guard", _guard_cases(models.sct.name, ways, model))
-        )
+        write_file(call.junit, as_junit_xml.render("robosc verify --guard", _guard_cases(models.sct.name, ways, model)))
     if call.as_object:
         put(ways.as_json(models.sct.name), nl=False)
     else:

@@ -139,6 +139,22 @@ def test_a_graph_gives_the_commands_of_well_known_types(run: Run, tmp_path: Path
     assert written.stderr == "left out: topic /cmd_vel_nav (geometry_msgs/Twist): its nodes pass commands on\n"
 
 
+def test_a_layer_in_the_graph_is_not_the_robot(run: Run, tmp_path: Path, graph: Path) -> None:
+    nodes = json.loads(graph.read_text())["nodes"]
+    go, twist = {"/navigate_to_pose": ["nav2_msgs/NavigateToPose"]}, ["geometry_msgs/Twist"]
+    inside = {f"/old_layer/controller{name}": types for name, types in go.items()}
+    layer = {
+        "name": "/old_layer",
+        "subscribers": {"/old_layer/controller/cmd_vel": twist},
+        "publishers": {"/cmd_vel": twist},
+        "action_servers": inside,
+        "action_clients": go,
+    }
+    graph.write_text(json.dumps({"nodes": [*nodes, layer]}))
+    run("new", "Porter", "--guard", "--from-graph", graph)
+    assert identifiers(tmp_path) == ["/amcl_pose", "/cmd_vel", "/navigate_to_pose"]
+
+
 def test_a_graph_gives_everything_that_the_named_nodes_take(run: Run, tmp_path: Path, graph: Path) -> None:
     written = run("new", "Porter", "--guard", "--from-graph", graph, "--robot", "/base", "--pose", "-")
     assert identifiers(tmp_path) == ["/cmd_vel", "/release"]
