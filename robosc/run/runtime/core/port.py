@@ -190,7 +190,7 @@ class ControllerPort(Port, Protocol):
     def serving_nodes(self, element: Client | Server) -> Sequence[tuple[str, str]]:
         """Return the nodes that serve the name of a service or action, each with its type.
 
-        A single server of the right type may be left out.
+        A single server of the right type may be left out. The types are as old as the last call of `endpoints`.
         """
 
     def calling_nodes(self, client: Client) -> Sequence[str]:

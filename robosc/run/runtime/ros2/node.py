@@ -116,6 +116,8 @@ class Ros2Node(RunningNode):
         self._served: list[Ros2ActionServer] = []
         self._qualities: dict[rosgraph.Subscription | rosgraph.Publisher, Any] = {}
         self._durabilities = _Durabilities(self.node)
+        #: Types by the names of services since the last look at the topics, None if unknown.
+        self._services: Mapping[str, Sequence[str]] | None = None
 
     def _load_type(self, interface: rosgraph.Interface) -> Any:
         message_type = super()._load_type(interface)
@@ -297,7 +299,9 @@ class Ros2Node(RunningNode):
         name = self.node.resolve_service_name(element.identifier + part[0])
         own = self.type_name(element.interface) + part[1]
         # The types of clients are among these; the exact list of servers takes longer.
-        types = dict(self.node.get_service_names_and_types()).get(name, ())
+        if self._services is None:
+            self._services = dict(self.node.get_service_names_and_types())
+        types = self._services.get(name, ())
         if set(types) <= {own} and self.node.count_services(name) <= 1:
             return []
         served = self._nodes_with(name, self.node.get_service_names_and_types_by_node)
@@ -326,6 +330,7 @@ class Ros2Node(RunningNode):
 
     def endpoints(self) -> dict[rosgraph.Subscription | rosgraph.Publisher, list[Endpoint]]:
         self._durabilities.look()
+        self._services = None
         return {element: self._endpoints(element) for element in self._topics}
 
     def _endpoints(self, element: rosgraph.Subscription | rosgraph.Publisher) -> list[Endpoint]:

@@ -108,6 +108,7 @@ class GraphMonitor {
       for (Topic& topic : heard_) look_at_publishers(topic);
       for (const Topic& topic : commanded_) look_at_listeners(topic);
       for (const Topic& topic : guarded_) look_around(topic);
+      if (!called_.empty()) types_ = graph_->get_service_names_and_types();
       for (Called& called : called_) {
         look_at_servers(called);
         if (!called.verb.empty()) look_at_callers(called);
@@ -176,7 +177,7 @@ class GraphMonitor {
 
   void look_at_servers(Called& called) {
     // These types include those of clients. To find the servers takes longer.
-    const auto types = graph_->get_service_names_and_types()[called.service];
+    const auto& types = types_[called.service];
     const auto is_other = [&](const std::string& type) { return type != called.type; };
     const bool may_be_single = std::none_of(types.begin(), types.end(), is_other) && count(*graph_, called, 0) <= 1;
     std::vector<std::string> servers, others;
@@ -300,6 +301,7 @@ class GraphMonitor {
   std::vector<Topic> commanded_;
   std::vector<Topic> guarded_;
   std::vector<Called> called_;
+  std::map<std::string, std::vector<std::string>> types_;  // Of all services at the last check.
   std::map<std::string, std::vector<std::string>> faults_;
   std::set<std::string> other_types_;
   std::set<std::string> told_;
