@@ -301,7 +301,7 @@ class GraphMonitor {
   std::vector<Topic> commanded_;
   std::vector<Topic> guarded_;
   std::vector<Called> called_;
-  std::map<std::string, std::vector<std::string>> types_;  // Of all services at the last check.
+  std::map<std::string, std::vector<std::string>> types_;  ///< Types of services at the last check.
   std::map<std::string, std::vector<std::string>> faults_;
   std::set<std::string> other_types_;
   std::set<std::string> told_;
