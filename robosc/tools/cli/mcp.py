@@ -39,7 +39,8 @@ def command(folders: Sequence[str], seconds: float, megabytes: int, paths: Paths
         from robosc.tools.mcp.server import Settings, create
         from robosc.tools.mcp.stdio import serve
     except ModuleNotFoundError as error:
-        if (error.name or "").startswith("robosc"):
+        missing = (error.name or "").partition(".")[0]
+        if missing == "robosc":
             raise
-        raise CallError(f"{error.name} is not installed: run pip install 'robosc[mcp]'") from error
+        raise CallError(f"{missing} is not installed: run pip install 'robosc[mcp]'") from error
     serve(create(Settings(folders, paths.libraries, paths.interfaces, megabytes << 20), seconds))

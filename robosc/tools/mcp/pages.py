@@ -15,8 +15,10 @@ OVERVIEW = "docs/llms.txt"
 #: Patterns of the files that `pages` lists, by the folder that ships. Pages of rules are listed by `robosc rule`.
 _LISTED = {"docs": ("llms.txt", "*.md", "howto/*.md", "patterns/*.rscd"), "examples": ("*/*.rscd", "*/*.scenarios")}
 _RULES = ("rules/*.md",)
+_RULES_FOLDER = "docs/rules/"
 #: URI template of the pages of rules.
 RULE_TEMPLATE = f"{SCHEME}docs/rules/{{rule}}.md"
+_LINK = re.compile(r"\]\(([^)]+)\)")
 _TITLE = re.compile(r"^(?:#|//) *(.+)$", re.MULTILINE)
 
 
@@ -44,6 +46,11 @@ class Page:
         return match[1].strip() if match else self.name
 
     @property
+    def is_rule(self) -> bool:
+        """Whether this is the page of a rule."""
+        return self.name.startswith(_RULES_FOLDER)
+
+    @property
     def size(self) -> int:
         """The size of the page in bytes."""
         return self.file.stat().st_size
@@ -58,6 +65,14 @@ class Page:
 def pages() -> tuple[Page, ...]:
     """Return the listed pages, in the order of their names, the overview first."""
     return tuple(page for folder, patterns in _LISTED.items() for page in _below(folder, patterns))
+
+
+@cache
+def optional_pages() -> frozenset[str]:
+    """Return the names of the pages that the overview lists as optional."""
+    overview = resource(f"{SCHEME}{OVERVIEW}")
+    _, _, optional = ("" if overview is None else overview.text).partition("\n## Optional\n")
+    return frozenset(f"docs/{link}" for link in _LINK.findall(optional))
 
 
 @cache

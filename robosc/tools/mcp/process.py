@@ -1,6 +1,7 @@
 """Process that runs calls for the server: `python -m robosc.tools.mcp.process`.
 
-The first line of input has the settings, and each further line a call. Each line of output is an answer.
+The first line of input has the settings, and each further line a call. The first line of output is empty, and each
+further line is an answer.
 """
 
 from __future__ import annotations
@@ -29,12 +30,11 @@ def main() -> None:
     # The grammar is permanent; the models of earlier calls are collected.
     gc.freeze()
     gc.set_threshold(50_000, 10, 10)
-    calls: Calls | None = None
+    calls = Calls(**json.loads(requests.readline()))
+    wire.write(b"\n")
+    wire.flush()
     for line in requests:
         request = json.loads(line)
-        if calls is None:
-            calls = Calls(**request)
-            continue
         wire.write(_line(calls.answer(request["tool"], request["arguments"])))
         wire.flush()
 

@@ -9,7 +9,7 @@ from functools import cache
 from math import log
 from typing import TYPE_CHECKING
 
-from robosc.tools.mcp.pages import all_pages
+from robosc.tools.mcp.pages import all_pages, optional_pages
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -18,12 +18,17 @@ if TYPE_CHECKING:
 
 _WORD = re.compile(r"[^\W_]+")
 _HEADING = re.compile(r"^#{1,4} +(.+)$")
+_CODE = re.compile(r"^ *```.*?^ *```", re.DOTALL | re.MULTILINE)
 _FENCE = re.compile(r"^ *```")
 _ENDINGS = re.compile(r"(?<=\w{3})(?:ies|es|s|ing|ed|y|e)$")
 #: Parameters of BM25: saturation of repeated words, influence of the length.
 _SATURATION, _LENGTH = 1.2, 0.5
 #: A word in the heading of a section counts as often as this many words of its text; one in the title of its page half.
 _HEADING_WEIGHT = 6
+#: Factor for optional pages.
+_OPTIONAL_WEIGHT = 0.75
+#: Maximum number of results of one page.
+_MOST_OF_PAGE = 2
 #: Maximum length of an excerpt in characters.
 MOST_CHARACTERS = 700
 
@@ -38,8 +43,9 @@ class Section:
 
     @property
     def words(self) -> Counter[str]:
-        """How often each word counts."""
-        counts = Counter(_words(self.text))
+        """How often each word counts. All code of a section counts a word once."""
+        counts = Counter(_words(_CODE.sub("", self.text)))
+        counts.update({word for code in _CODE.findall(self.text) for word in _words(code)})
         for text, weight in ((self.heading, _HEADING_WEIGHT), (self.page.title, _HEADING_WEIGHT // 2)):
             for word in _words(text):
                 counts[word] += weight
@@ -47,7 +53,10 @@ class Section:
 
 
 def search(query: str, most: int) -> list[Section]:
-    """Return the sections that fit a query best, in order; empty if no word of the query occurs."""
+    """Return the sections that fit a query best, in order, at most two of a page.
+
+    Empty if no word of the query occurs.
+    """
     index = _index()
     words = set(_words(query))
     average = sum(length for _, _, length in index) / max(len(index), 1)
@@ -60,9 +69,14 @@ def search(query: str, most: int) -> list[Section]:
             * (counts[word] * (_SATURATION + 1) / (counts[word] + norm))
             for word in words & counts.keys()
         )
+        score *= _OPTIONAL_WEIGHT if section.page.name in optional_pages() else 1
         if score:
             scored.append((-score, number, section))
-    return [section for _, _, section in sorted(scored, key=lambda row: row[:2])[:most]]
+    results: list[Section] = []
+    for _, _, section in sorted(scored, key=lambda row: row[:2]):
+        if sum(other.page is section.page for other in results) < _MOST_OF_PAGE:
+            results.append(section)
+    return results[:most]
 
 
 def excerpt(section: Section, query: str) -> str:
@@ -82,6 +96,10 @@ def _index() -> list[tuple[Section, Counter[str], int]]:
 
 
 def _sections(page: Page) -> Iterator[Section]:
+    """Yield the sections of a page. The page of a rule is one: its sections are all called the same."""
+    if page.is_rule:
+        yield Section(page, page.title, page.text)
+        return
     heading, lines, is_code = page.title, list[str](), False
     for line in page.text.splitlines():
         is_code ^= bool(_FENCE.match(line))

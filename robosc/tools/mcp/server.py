@@ -1,7 +1,8 @@
-"""The server: tools and resources for a client, which runs models of language."""
+"""The server: tools and resources for a client with a language model."""
 
 from __future__ import annotations
 
+import asyncio
 import json
 import sys
 from contextlib import asynccontextmanager
@@ -114,10 +115,11 @@ def create(settings: Settings, seconds: float) -> Server[Any]:
 
     @asynccontextmanager
     async def running(_server: Server[Any]) -> AsyncIterator[None]:
-        await calls.start()
+        start = asyncio.create_task(calls.start())
         try:
             yield
         finally:
+            start.cancel()
             await calls.stop()
 
     async def list_tools(

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 #: Maximum size of an answer in bytes. The process itself keeps it.
 MOST_BYTES = 8 << 20
+#: Maximum time for the start of a process, which loads the tools, in seconds.
+_START_SECONDS = 60.0
 #: Time for a process to remove its temporary files and to end its own processes, in seconds.
 _PATIENCE_SECONDS = 2.0
 
@@ -27,10 +29,10 @@ class CallFailedError(Exception):
 
 
 class Worker:
-    """A process that answers calls: it reads and writes one line of JSON for each."""
+    """A process that answers calls: it reads and writes one line of JSON for each, after an empty line at its start."""
 
     def __init__(self, command: Sequence[str], settings: Mapping[str, Any], seconds: float) -> None:
-        """Run `command`, whose first line of input is the settings. A call may take that many seconds."""
+        """Run `command`, whose first line of input is the settings. A call may take that many seconds once it runs."""
         self._command = command
         self._settings = settings
         self._seconds = seconds
@@ -41,7 +43,8 @@ class Worker:
     async def start(self) -> None:
         """Start the process, so that the first call does not wait for it."""
         async with self._turn:
-            await self._running()
+            with suppress(CallFailedError):  # the first call tries again
+                await self._running()
 
     async def call(self, request: Mapping[str, Any]) -> Any:
         """Return the answer to a request, when its turn comes. Raises CallFailedError."""
@@ -70,13 +73,27 @@ class Worker:
         return json.loads(answer)
 
     async def _running(self) -> Process:
-        if self._process is None or self._process.returncode is not None:
-            self._process = await asyncio.create_subprocess_exec(
-                *self._command, stdin=PIPE, stdout=PIPE, limit=2 * MOST_BYTES
-            )
-            assert self._process.stdin is not None
-            self._process.stdin.write(json.dumps(self._settings).encode() + b"\n")
-        return self._process
+        """Return the process, which is started if there is none. Raises CallFailedError."""
+        if self._process is not None and self._process.returncode is None:
+            return self._process
+        self._process = process = await asyncio.create_subprocess_exec(
+            *self._command, stdin=PIPE, stdout=PIPE, limit=2 * MOST_BYTES
+        )
+        assert process.stdin is not None
+        assert process.stdout is not None
+        process.stdin.write(json.dumps(self._settings).encode() + b"\n")
+        is_ready = False
+        try:
+            async with asyncio.timeout(_START_SECONDS):
+                is_ready = await process.stdout.readline() == b"\n"
+        except TimeoutError:
+            pass
+        finally:
+            if not is_ready:
+                self._end()
+        if not is_ready:
+            raise CallFailedError("the process for calls does not start: the log of the server has the reason")
+        return process
 
     def _end(self) -> None:
         """End the process without waiting for it: the caller may be canceled."""
