@@ -15,9 +15,11 @@ from mcp_types import (
     INVALID_PARAMS,
     CallToolResult,
     ListResourcesResult,
+    ListResourceTemplatesResult,
     ListToolsResult,
     ReadResourceResult,
     Resource,
+    ResourceTemplate,
     TextContent,
     TextResourceContents,
     ToolAnnotations,
@@ -27,7 +29,7 @@ from mcp_types import Tool as ToolType
 from robosc import __version__
 from robosc.tools.mcp.arguments import faults
 from robosc.tools.mcp.catalog import TOOLS
-from robosc.tools.mcp.pages import pages, resource
+from robosc.tools.mcp.pages import RULE_TEMPLATE, pages, resource
 from robosc.tools.mcp.stdio import error_result, unknown_tool
 from robosc.tools.mcp.worker import CallFailedError, Worker
 
@@ -154,6 +156,14 @@ def create(settings: Settings, seconds: float) -> Server[Any]:
             ]
         )
 
+    async def list_templates(
+        _context: ServerRequestContext[Any], _params: PaginatedRequestParams | None
+    ) -> ListResourceTemplatesResult:
+        rule = ResourceTemplate(
+            uri_template=RULE_TEMPLATE, name="rule", title="Page of a rule", mime_type="text/markdown"
+        )
+        return ListResourceTemplatesResult(resource_templates=[rule])
+
     async def read_resource(
         _context: ServerRequestContext[Any], params: ReadResourceRequestParams
     ) -> ReadResourceResult:
@@ -172,5 +182,6 @@ def create(settings: Settings, seconds: float) -> Server[Any]:
         on_list_tools=list_tools,
         on_call_tool=call_tool,
         on_list_resources=list_resources,
+        on_list_resource_templates=list_templates,
         on_read_resource=read_resource,
     )

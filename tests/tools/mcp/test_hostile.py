@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
+pytestmark = pytest.mark.xdist_group("mcp")
+
 DOOR = """\
 robot Door {
   component Leaf {
@@ -187,7 +189,7 @@ def test_texts_that_are_no_models(robosc: Assistant, text: str) -> None:
 
 def test_a_long_synthesis_ends(desk: Path) -> None:
     """It delays no quick call."""
-    with assistant(desk, "--seconds", "3") as client:
+    with assistant(desk, "--seconds", "2") as client:
 
         async def calls() -> tuple[Any, Any]:
             long = asyncio.create_task(client.client.call_tool("synthesize", {"text": LONG}))
@@ -197,7 +199,7 @@ def test_a_long_synthesis_ends(desk: Path) -> None:
 
         long, quick = client.wait(calls())
     assert not quick.is_error
-    assert "took more than 3 seconds" in long.content[0].text
+    assert "took more than 2 seconds" in long.content[0].text
 
 
 def test_a_canceled_call_ends(robosc: Assistant) -> None:
