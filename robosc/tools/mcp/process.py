@@ -1,7 +1,7 @@
-"""Process that runs calls for the server: `python -m robosc.tools.mcp.process`.
+"""Process that runs calls for the server: `python -m robosc.tools.mcp.process PARENT`.
 
-The first line of input has the settings, and each further line a call. The first line of output is empty, and each
-further line is an answer.
+PARENT is the number of the server's process, with which this one ends. The first line of input has the settings, and
+each further line a call. The first line of output is empty, and each further line is an answer.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from robosc.tools.workers import end_with_parent
 
 def main() -> None:
     """Answer calls until the input ends."""
-    end_with_parent(os.getppid())
+    end_with_parent(int(sys.argv[1]))
     wire = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # prints must not reach the server
     requests = os.fdopen(os.dup(0), "rb")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import os
 import sys
 from contextlib import asynccontextmanager
 from dataclasses import asdict, dataclass
@@ -39,8 +40,8 @@ if TYPE_CHECKING:
     from mcp.server.context import ServerRequestContext
     from mcp_types import CallToolRequestParams, PaginatedRequestParams, ReadResourceRequestParams
 
-#: The command that runs calls.
-COMMAND = (sys.executable, "-P", "-m", "robosc.tools.mcp.process")
+#: The command that runs calls; the number of this process follows it. `-P` imports nothing from the user's folders.
+_COMMAND = (sys.executable, "-P", "-m", "robosc.tools.mcp.process")
 #: Maximum number of calls that wait at the same time.
 MOST_WAITING = 100
 #: Exit statuses of calls that were not executed: a wrong call, an internal error.
@@ -71,7 +72,8 @@ class _Calls:
     """Calls of tools: quick ones and long ones have a process each, so that a long one delays no quick one."""
 
     def __init__(self, settings: Settings, seconds: float) -> None:
-        self._workers = {is_long: Worker(COMMAND, asdict(settings), seconds) for is_long in (False, True)}
+        command = (*_COMMAND, str(os.getpid()))
+        self._workers = {is_long: Worker(command, asdict(settings), seconds) for is_long in (False, True)}
         self._waiting = 0
 
     async def answer(self, name: str, arguments: dict[str, Any]) -> CallToolResult:
