@@ -101,7 +101,7 @@ class Calls:
         path, text = arguments.get("path"), arguments.get("text")
         if path is None and text is None:
             raise CallError("name a file with `path`, or give the model itself with `text`")
-        if text is None:
+        if path is not None and text is None:
             self._folders.file(path, MODELS)
         else:
             self._folders.inside(path or _MODEL, (".rscd",))
