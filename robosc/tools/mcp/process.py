@@ -27,7 +27,7 @@ def main() -> None:
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     sys.set_int_max_str_digits(0)  # the number of states of a robot may have many digits
     language()
-    # The grammar is permanent; the models of earlier calls are collected.
+    # The grammar is permanent. The model of a call is collected after the answer.
     gc.freeze()
     gc.set_threshold(50_000, 10, 10)
     calls = Calls(**json.loads(requests.readline()))
@@ -37,6 +37,7 @@ def main() -> None:
         request = json.loads(line)
         wire.write(_line(calls.answer(request["tool"], request["arguments"])))
         wire.flush()
+        gc.collect()
 
 
 def _line(answer: dict[str, Any]) -> bytes:
