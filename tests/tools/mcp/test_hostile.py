@@ -287,15 +287,16 @@ def test_lines_that_are_no_messages(desk: Path) -> None:
 def test_the_processes_of_calls_end_with_the_server(desk: Path) -> None:
     """Also one that is busy, after SIGKILL."""
     raw = Raw(desk)
-    raw.call(2, "synthesize", {"text": LONG})
-    server, children = raw.process.pid, list[str]()
-    until = time.monotonic() + LONGEST
-    while len(children) < 2 and time.monotonic() < until:
-        time.sleep(0.05)
-        children = Path(f"/proc/{server}/task/{server}/children").read_text().split()
+    raw.call(2, "synthesize", {"text": DOOR})
+    raw.answers(2)
+    raw.call(3, "synthesize", {"text": LONG})
+    time.sleep(0.5)  # it reads the model
+    server = raw.process.pid
+    children = Path(f"/proc/{server}/task/{server}/children").read_text().split()
     raw.process.kill()
     raw.process.communicate(timeout=LONGEST)
     assert len(children) == 2
+    until = time.monotonic() + LONGEST
     while any(runs(child) for child in children) and time.monotonic() < until:
         time.sleep(0.05)
     assert [child for child in children if runs(child)] == []
