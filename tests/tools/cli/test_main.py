@@ -34,6 +34,7 @@ COMMANDS = [
     "interfaces",
     "lsp",
     "dap",
+    "mcp",
 ]
 
 
