@@ -138,9 +138,10 @@ class Calls:
         is_written = "text" not in arguments
         with limit_memory(self._memory, "the repair"):
             text, count = mended(source.path, source.documents.read(Path(source.path), is_input=False), source.paths)
-            if is_written and count:
-                write_file(source.path, text)
-            documents = source.documents if is_written else Documents({source.path: text})
+        if is_written and count:
+            write_file(source.path, text)
+        documents = source.documents if is_written else Documents({source.path: text})
+        with limit_memory(self._memory, "the check"):
             read(source.path, source.paths, report, documents)
         return 0, {"edits": count, "text": text}
 

@@ -169,7 +169,8 @@ def test_nothing_is_overwritten(robosc: Assistant) -> None:
 def test_a_file_that_is_not_text(robosc: Assistant) -> None:
     (finding,) = robosc.answer("check", path="bytes.rscd")["findings"][:1]
     assert finding["message"] == "the byte 0xff is not UTF-8"
-    assert robosc.answer("fix", path="bytes.rscd")["result"]["edits"] == 0
+    fixed = robosc.answer("fix", path="bytes.rscd")
+    assert (fixed["result"]["edits"], fixed["findings"][0]) == (0, finding)
 
 
 def test_unknown_tools_and_resources(robosc: Assistant) -> None:
