@@ -5,9 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from simulator.engine import config_beside, load
-from simulator.guarding import Trial, report
-
+from ..simulator.engine import config_beside, load
+from ..simulator.guarding import Trial, report
 from .gallery import GALLERY
 
 FOLDER = Path(__file__).parent

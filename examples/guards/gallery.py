@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 
-from simulator.judge import STOP, Button, Judge, both, either, finite, opposite
-from simulator.random_data import destination, nothing, stamp, stamped_twist, twist
-
+from ..simulator.judge import STOP, Button, Judge, both, either, finite, opposite
+from ..simulator.random_data import destination, nothing, stamp, stamped_twist, twist
 from .world import Base, SmallWorld
 
 WHEELS, NAVIGATE, FOLLOW = "/cmd_vel", "/navigate_to_pose", "/arm_controller/follow_joint_trajectory"
@@ -21,18 +20,14 @@ class SpeedWorld(SmallWorld):
 
     def __init__(self, seed=0):
         super().__init__(seed)
-        self.base, self.nearest = Base(self), 5.0
+        self.nearest = 5.0
 
     def live(self):
         """Let people come and go."""
-        self.base.act()
+        super().live()
         self.nearest = max(0.2, min(self.nearest + self.random.uniform(-0.2, 0.2), 6.0))
         if self.every(0.1):
             self.say("/people/nearest", {"data": math.nan if self.happens(0.5) else self.nearest})
-
-    def receive(self, topic, data):
-        """Drive."""
-        self.base.obey(data)
 
     def danger(self):
         """Return whether the base is fast although somebody has been near for a while."""
@@ -78,21 +73,17 @@ class StopWorld(SmallWorld):
 
     def __init__(self, seed=0):
         super().__init__(seed)
-        self.base, self.pressed = Base(self), False
+        self.pressed = False
 
     def live(self):
         """Press and release the button."""
-        self.base.act()
+        super().live()
         if self.happens(0.3):
             self.pressed = not self.pressed
         if self.every(0.1):
             self.say("/emergency_stop", {"data": self.pressed})
         if self.happens(0.6):
             self.say("/continue", {})
-
-    def receive(self, topic, data):
-        """Drive."""
-        self.base.obey(data)
 
     def danger(self):
         """Return what still moves a while after the button was pressed."""
@@ -124,22 +115,6 @@ class StopJudge(Judge):
 TELEOP, AUTONOMY = "/teleop/cmd_vel", "/autonomy/cmd_vel"
 
 
-class SourcesWorld(SmallWorld):
-    """A base that obeys two sources."""
-
-    def __init__(self, seed=0):
-        super().__init__(seed)
-        self.base = Base(self)
-
-    def live(self):
-        """Move."""
-        self.base.act()
-
-    def receive(self, topic, data):
-        """Drive."""
-        self.base.obey(data, topic)
-
-
 class TeleopJudge(Judge):
     """A person has priority until a second after the last velocity."""
 
@@ -160,12 +135,6 @@ class DockingWorld(SmallWorld):
     """Nav2 and its docking server, which both move the base."""
 
     serves = (NAVIGATE, DOCK, UNDOCK)
-
-    def live(self):
-        """Let the servers work."""
-
-    def receive(self, topic, data):
-        """Ignore messages."""
 
     def start(self, action, goal, data):
         """Accept a goal. Docking and undocking share a server, which leaves a goal that it had lost."""
@@ -216,20 +185,12 @@ class ArmWorld(SmallWorld):
 
     serves = (FOLLOW,)
 
-    def __init__(self, seed=0):
-        super().__init__(seed)
-        self.base = Base(self)
-
     def live(self):
         """Move, and report the speed."""
-        self.base.act()
+        super().live()
         if self.every(0.1):
             twist = {"linear": {"x": self.base.speed}, "angular": {"z": self.base.turn}}
             self.say("/odom", {"twist": {"twist": twist}})
-
-    def receive(self, topic, data):
-        """Drive."""
-        self.base.obey(data)
 
     def danger(self):
         """Return whether both move."""
@@ -300,9 +261,6 @@ class FenceWorld(SmallWorld):
         """Return whether the robot is inside the fence."""
         return abs(self.x) < 20.0 + allowance and abs(self.y) < 10.0 + allowance
 
-    def receive(self, topic, data):
-        """Ignore messages."""
-
     def danger(self):
         """Return whether Nav2 drives outside of the fence for a while."""
         server = self.servers[NAVIGATE]
@@ -344,11 +302,11 @@ class LocalizationWorld(SmallWorld):
     def __init__(self, seed=0):
         super().__init__(seed)
         #: The localization reports only while the robot moves. Its silence means nothing.
-        self.base, self.variance, self.reported = Base(self), 1.0, 1.0
+        self.variance = self.reported = 1.0
 
     def live(self):
         """Turn to find the place, and lose it again."""
-        self.base.act()
+        super().live()
         if self.happens(0.3):
             self.variance = self.random.choice((0.01, 0.1, 0.3, 2.0, math.nan))
         if self.happens(2.0):
@@ -356,10 +314,6 @@ class LocalizationWorld(SmallWorld):
             covariance[0], covariance[7] = self.random.sample([self.variance, min(self.variance, 0.2)], 2)
             if self.say("/amcl_pose", {"pose": {"covariance": covariance}}):
                 self.reported = self.variance
-
-    def receive(self, topic, data):
-        """Drive."""
-        self.base.obey(data)
 
     def danger(self):
         """Return whether the robot drives although it has reported for a while that it does not know its place."""
@@ -415,18 +369,14 @@ class PublisherJudge(Judge):
 class StaleWorld(SmallWorld):
     """A base with odometry that bears stamps."""
 
-    def __init__(self, seed=0):
-        super().__init__(seed)
-        self.base = Base(self)
-
     def live(self):
         """Report the odometry."""
-        self.base.act()
+        super().live()
         self.say("/odom", {"header": {"stamp": stamp(self.time), "frame_id": "odom"}})
 
     def receive(self, topic, data):
         """Drive."""
-        self.base.obey(data["twist"])
+        super().receive(topic, data["twist"])
 
 
 class StaleJudge(Judge):
@@ -498,6 +448,7 @@ class BatteryJudge(DockingJudge):
 
     def permits(self, name, data):
         """Return whether the battery is charged, or the robot docks."""
+        del data
         if name == NAVIGATE:
             return both(self.charged, self.fresh("/battery_state", 5.0))
         return not {DOCK, UNDOCK} & {*self.running}
@@ -532,9 +483,6 @@ class GripperWorld(SmallWorld):
             self.below = not self.below
         if self.every(0.1):
             self.say(PLACE, {"data": self.below})
-
-    def receive(self, topic, data):
-        """Ignore messages."""
 
     def result(self, action, what):
         """Return whether the fingers met something."""
@@ -646,12 +594,12 @@ class CorridorJudge(Judge):
 GALLERY = {
     "speed_near_people": (SpeedWorld, SpeedJudge),
     "stop_button": (StopWorld, StopJudge),
-    "teleop_over_autonomy": (SourcesWorld, TeleopJudge),
+    "teleop_over_autonomy": (SmallWorld, TeleopJudge),
     "dock_or_navigate": (DockingWorld, DockingJudge),
     "arm_or_base": (ArmWorld, ArmJudge),
     "geofence": (FenceWorld, FenceJudge),
     "localized_first": (LocalizationWorld, LocalizationJudge),
-    "one_publisher": (SourcesWorld, PublisherJudge),
+    "one_publisher": (SmallWorld, PublisherJudge),
     "stale_command": (StaleWorld, StaleJudge),
     "low_battery": (BatteryWorld, BatteryJudge),
     "full_gripper": (GripperWorld, GripperJudge),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import random
 
-from simulator.simulation import GoalNews, Message
+from ..simulator.simulation import GoalNews, Message
 
 STEPS_PER_SECOND = 20
 #: Lengths of silences in seconds. None of them is a patience of a guard.
@@ -15,7 +15,7 @@ SILENT = 0.02
 
 
 class SmallWorld:
-    """A world with the interface of `simulator.simulation.Simulation` for a guard.
+    """A base and action servers, with the interface of `simulator.simulation.Simulation` for a guard.
 
     `advance` runs one step of time and returns the messages and news of goals that are sent after it. `danger` returns
     the hazard that the guard has not prevented.
@@ -27,6 +27,7 @@ class SmallWorld:
 
     def __init__(self, seed=0):
         self.random = random.Random(f"{type(self).__name__}/{seed}")  # noqa: S311  # not used for security
+        self.base = Base(self)
         self.servers = {action: Server(self, action) for action in self.serves}
         self._steps = 100 * STEPS_PER_SECOND
         self._sent = []
@@ -48,12 +49,12 @@ class SmallWorld:
         return sent
 
     def live(self):
-        """Move the world on, and let devices report."""
-        raise NotImplementedError
+        """Move the base. Subclasses let people and devices act, and devices report."""
+        self.base.act()
 
     def danger(self):
         """Return the present hazard, or None."""
-        return None
+        return
 
     def every(self, seconds):
         """Return whether a device with this period reports now."""
@@ -83,12 +84,9 @@ class SmallWorld:
         return holds and self.time - self._begun.setdefault(key, self.time) > seconds
 
     def receive(self, topic, data):
-        """Obey a message."""
-        raise NotImplementedError
-
-    def ask(self, service, call, data):
-        """Accept a call."""
-        raise NotImplementedError
+        """Drive at a velocity."""
+        del topic
+        self.base.obey(data)
 
     def start(self, action, goal, data):
         """Accept or reject a goal. Return whether it is accepted."""
@@ -113,13 +111,11 @@ class Base:
         self._world = world
         self.speed = self.turn = self._wanted = self._turn = 0.0
         self._obeyed = -math.inf
-        #: The source of the last velocity.
-        self.source = None
 
-    def obey(self, data, source=None):
+    def obey(self, data):
         """Take a velocity."""
         self._wanted, self._turn = (max(-2.0, min(wish, 2.0)) for wish in (data["linear"]["x"], data["angular"]["z"]))
-        self._obeyed, self.source = self._world.time, source
+        self._obeyed = self._world.time
 
     def act(self):
         """Move. Return the distance."""

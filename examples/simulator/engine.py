@@ -31,8 +31,12 @@ ZERO = {"x": 0.0, "y": 0.0, "z": 0.0}
 POSE = {"header": {"frame_id": ""}, "pose": {"position": ZERO, "orientation": {**ZERO, "w": 1.0}}}
 DEFAULTS = {
     "Twist": {"linear": ZERO, "angular": ZERO},
-    "TwistStamped": {"header": {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": ""}, "twist": {"linear": ZERO, "angular": ZERO}},
+    "TwistStamped": {
+        "header": {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": ""},
+        "twist": {"linear": ZERO, "angular": ZERO},
+    },
     "Int16": {"data": 0},
+    "Bool": {"data": False},
     "NavigateToPose": {"pose": POSE},
     "SpeedLimit": {"percentage": False},
 }

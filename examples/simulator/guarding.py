@@ -20,14 +20,17 @@ from robosc.run.runtime.core.port import CancelAnswer, Failure, GoalOutcome
 from robosc.run.runtime.core.proxies import ActionProxy, ProxiedGoal, ServiceProxy
 from robosc.run.runtime.core.settings import SafeMessages, Settings
 
-from .engine import OUTCOMES, Received, Sent, WorldPort, plain
+from .engine import OUTCOMES, Received, Sent, WorldPort, config_beside, load, plain
 from .playing import said
+from .restless import GUARDED, restless
 from .simulation import Answer, GoalNews, Message
 
 #: The share of the agent's turns in which it cancels a running goal instead.
 CANCELS = 0.05
-#: The share of steps after which the agent sends other commands; the share of turns in which it sends a second goal.
-CHANGES, SECOND_GOALS = 0.03, 0.1
+#: The share of steps after which the agent sends other commands.
+CHANGES = 0.03
+#: The shares of steps in which it sends a message, a goal or call, and a second one before the first has ended.
+MESSAGES, GOALS, SECOND_GOALS = 0.6, 0.15, 0.03
 CANCEL_ANSWERS = {True: CancelAnswer.ACCEPTED, False: CancelAnswer.TERMINATED, None: CancelAnswer.REFUSED}
 
 
@@ -70,7 +73,7 @@ class Guard:
         self.work()
 
     def send(self, name, data):
-        """Handle a command of the agent. The guard has no topic, service or action for a command that it does not know."""
+        """Handle a command of the agent. The guard offers nothing for commands that it does not know."""
         if name in self._publishers:
             publisher = self._publishers[name]
             forwarded = self._layer.forwarded(publisher.sendings[0], Sent(data))
@@ -194,7 +197,7 @@ class Trial:
     """A random agent behind a guard, in a world, before a judge. The same seed gives the same trial."""
 
     def __init__(self, world, judge, models, configuration, seed=0):
-        self._world, self._judge = world, judge
+        self.world, self._judge = world, judge
         #: Names of the commands that the agent sends at present.
         self._active = [*judge.commands]
         self._random = random.Random(f"agent/{seed}")  # noqa: S311  # not used for security
@@ -209,8 +212,8 @@ class Trial:
     def run(self, commands, until=lambda: False):
         """Let the agent send a number of commands, or fewer if `until()` holds. Return the tally."""
         while self.tally.commands < commands and not until():
-            items = self._world.advance()
-            self._judge.time = self._world.time
+            items = self.world.advance()
+            self._judge.time = self.world.time
             self._guard.work()
             self._check_goals()
             for item in items:
@@ -218,7 +221,7 @@ class Trial:
             for name in self._choose():
                 if self.tally.commands < commands:
                     self._act(name)
-            danger = self._world.danger()
+            danger = self.world.danger()
             if danger:
                 self._fault(danger)
         return self.tally
@@ -230,10 +233,11 @@ class Trial:
             self._judge.receive(item.topic, item.data)
         elif isinstance(item, Answer):
             self._judge.answer(item.service, item.data)
-        elif isinstance(item, GoalNews) and item.what != "feedback" and self._boundary.goals.get(item.action) == item.goal:
-            del self._boundary.goals[item.action]
-            self._ending.discard(item.action)
-            self._judge.end(item.action, item.what, item.data)
+        elif isinstance(item, GoalNews) and self._boundary.goals.get(item.action) == item.goal:
+            if item.what != "feedback":
+                del self._boundary.goals[item.action]
+                self._ending.discard(item.action)
+            self._judge.tell(item.action, item.what, item.data)
         self._guard.take(item)
         for name, data in self._boundary.arrived:
             self._fault(f"{name} with {data} reaches the world without a command")
@@ -243,31 +247,31 @@ class Trial:
         """Return the commands that the agent sends now. It sends some commands for a while, then others."""
         if self._random.random() < CHANGES:
             self._active = [name for name in self._judge.commands if self._random.random() < 0.6]
-        busy = {*self._boundary.goals}
-        return [
-            name
-            for name in self._active
-            if self._random.random() < (SECOND_GOALS if name in busy else 0.6)
-        ]
+        return [name for name in self._active if self._random.random() < self._share(name)]
+
+    def _share(self, name):
+        if name in self._judge.running:
+            return SECOND_GOALS
+        return GOALS if name in self.world.serves or name in self.world.answers else MESSAGES
 
     def _act(self, name):
         """Let the agent send a command, or cancel a goal."""
         if self._boundary.goals and self._random.random() < CANCELS:
             action = self._random.choice(sorted(self._boundary.goals))
-            self._world.cancel(action, self._boundary.goals[action])
+            self.world.cancel(action, self._boundary.goals[action])
             return
-        data = self._judge.commands[name](self._random, self._world.time)
+        data = self._judge.commands[name](self._random, self.world.time)
         outcomes = self._judge.expect(name, data)
         self._boundary.arrived.clear()
         self._guard.send(name, data)
         if self._compare(name, data, outcomes, [*self._boundary.arrived]):
-            self._judge.send(name, data, opens=name in self._world.answers or name in self._world.serves)
-            if name in self._world.serves and name not in self._boundary.goals:
-                self._judge.end(name, "rejected", {})
+            self._judge.send(name, data, opens=name in self.world.answers or name in self.world.serves)
+            if name in self.world.serves and name not in self._boundary.goals:
+                self._judge.tell(name, "rejected", {})
         self._check_goals()
 
     def _compare(self, name, data, outcomes, arrived):
-        """Compare what reached the world with the outcomes that the judge permits. Return whether the command passed."""
+        """Compare what reached the world with the permitted outcomes. Return whether the command passed."""
         stop = [(name, self._judge.replaced[name])] if name in self._stoppable else []
         withheld = stop if self._stoppable.get(name) else []
         possible = [withheld if outcome is None else [(name, outcome)] for outcome in outcomes]
@@ -295,7 +299,14 @@ class Trial:
                 self._fault(f"the goal of {action} is not canceled")
 
     def _fault(self, words):
-        self.tally.faults.append(f"at {self._world.time:.2f}: {words}; {self._judge.known()}")
+        self.tally.faults.append(f"at {self.world.time:.2f}: {words}; {self._judge.known()}")
+
+
+def guard_scenario(name, seed=0, models=None):
+    """Return a random agent behind the guard of a scenario; `models` replace those of the guard."""
+    world, judge = restless(name, seed)
+    path = GUARDED[name].model
+    return Trial(world, judge, models or load(path), config_beside(path), seed)
 
 
 def report(name, tally):

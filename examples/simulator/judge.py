@@ -53,10 +53,13 @@ class Judge:
         self.running.pop(service, None)
         self.ended(service, "answered", data)
 
-    def end(self, action, what, data):
-        """Handle the end of a goal."""
-        self.running.pop(action, None)
-        self.ended(action, what, data)
+    def tell(self, action, what, data):
+        """Handle feedback or the end of a goal."""
+        if what == "feedback":
+            self.fed_back(data)
+        else:
+            self.running.pop(action, None)
+            self.ended(action, what, data)
 
     def must_end(self, action):
         """Return whether a running goal must be canceled; None at the very moment of a timeout."""
@@ -76,6 +79,9 @@ class Judge:
 
     def sent(self, name, data):
         """Note a command that has reached the world."""
+
+    def fed_back(self, data):
+        """Note feedback of a goal."""
 
     def ended(self, name, what, data):
         """Note the end of a goal, or the answer of a service."""

@@ -1,0 +1,68 @@
+"""A random agent behind the guard of each scenario: the judge, which does not know the model, has no objection."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from typing import TYPE_CHECKING
+
+import pytest
+
+from examples.simulator.engine import load
+from examples.simulator.guarding import guard_scenario
+from examples.simulator.restless import GUARDED
+from examples.simulator.scenarios import SCENARIOS
+from examples.simulator.simulation import Simulation
+from tests.searching import slow_but
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+EACH = pytest.mark.parametrize("name", slow_but(["line_follower", "supervised_line_follower"], SCENARIOS))
+#: Commands of the agent. `benchmarks/guards.py` sends 10,000.
+COMMANDS, MOST = 500, 4000
+#: Statements without which a guard lets pass what must not pass, or blocks what may pass.
+PART = re.compile(r"^  (?:requirement|limit) .*\n(?:    .*\n)*", re.MULTILINE)
+#: The parts of each model, with the first scenario that it guards.
+PARTS = {
+    (guarded.model, part): name
+    for name, guarded in reversed(GUARDED.items())
+    for part in PART.findall(guarded.model.read_text(encoding="utf-8"))
+}
+
+
+def test_each_scenario_has_a_guard_for_all_its_commands() -> None:
+    assert list(GUARDED) == list(SCENARIOS)
+    for name, guarded in GUARDED.items():
+        world = Simulation(SCENARIOS[name])
+        assert {*guarded.judge.commands} == {*world.hears, *world.answers, *world.serves} - {*world.says}
+
+
+@EACH
+def test_nothing_forbidden_reaches_the_world(name: str) -> None:
+    tally = guard_scenario(name).run(COMMANDS)
+    assert tally.faults == []
+    assert tally.reached.total() > 5
+    assert tally.withheld.total() > 5
+
+
+def test_a_trial_is_always_the_same() -> None:
+    first, second, other = (guard_scenario("supervised_line_follower", seed).run(200) for seed in (0, 0, 1))
+    assert first == second != other
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("name", "part"),
+    [
+        pytest.param(name, part, marks=[] if name == "line_follower" else [pytest.mark.matrix])
+        for (_, part), name in PARTS.items()
+    ],
+)
+def test_a_missing_part_is_noticed(name: str, part: str, tmp_path: Path) -> None:
+    model = GUARDED[name].model
+    for library in model.parent.glob("parts.rscd"):
+        shutil.copy(library, tmp_path)
+    (tmp_path / model.name).write_text(model.read_text(encoding="utf-8").replace(part, ""), encoding="utf-8")
+    trial = guard_scenario(name, models=load(tmp_path / model.name))
+    assert trial.run(MOST, until=lambda: bool(trial.tally.faults)).faults != []
