@@ -247,7 +247,8 @@ class Trial:
         """Return the commands that the agent sends now. It sends some commands for a while, then others."""
         if self._random.random() < CHANGES:
             self._active = [name for name in self._judge.commands if self._random.random() < 0.6]
-        return [name for name in self._active if self._random.random() < self._share(name)]
+        weights = self._judge.weights
+        return [name for name in self._active if self._random.random() < self._share(name) * weights.get(name, 1.0)]
 
     def _share(self, name):
         if name in self._judge.running:

@@ -19,6 +19,8 @@ class Judge:
 
     #: Commands of the agent, by topic, service or action: functions from random numbers and the time to data.
     commands: dict = {}  # noqa: RUF012  # a constant table
+    #: Commands that the agent sends more or less often than others, by a factor.
+    weights: dict = {}  # noqa: RUF012
     #: Topics on which the guard sends this stop when it blocks a command after it forwarded one.
     replaced: dict = {}  # noqa: RUF012
 

@@ -103,7 +103,8 @@ def _locate(simulation, _):
 
 
 def _click(simulation, numbers):
-    simulation.scenario.click(simulation, numbers.uniform(0.3, 4.0), numbers.uniform(0.3, 2.7))
+    if numbers.random() < 0.3:
+        simulation.scenario.click(simulation, numbers.uniform(0.3, 4.0), numbers.uniform(0.3, 2.7))
 
 
 def _set(kind, name, *values):
@@ -134,7 +135,7 @@ NAVIGATING = [_locate, _click, _click, _clear]
 INCIDENTS = {
     "line_follower": DRIVING,
     "simple_navigation": NAVIGATING,
-    "obstacle_navigation": [*NAVIGATING, _put_pillar],
+    "obstacle_navigation": [*NAVIGATING, _put_pillar, _set("Navigation", "recoveries", 5, 6)],
     "object_finder": DRIVING,
     "maze_solver": DRIVING,
     "push_ball": DRIVING,
@@ -353,6 +354,7 @@ class WarehouseJudge(ButtonJudge):
         UNDOCK: nothing,
         **dict.fromkeys((RAISE, LOWER, ENTER, LEAVE), nothing),
     }
+    weights = {LIMIT: 0.1, NAVIGATE: 2.0, DOCK: 0.1, LEAVE: 0.3, RAISE: 0.3}  # noqa: RUF012
     views = ("/front/scan", "/rear/scan")
 
     def __init__(self, time=0.0):
@@ -392,7 +394,7 @@ class WarehouseJudge(ButtonJudge):
             case "/aisle/enter":
                 return not self.in_aisle and self.lift_down
             case "/aisle/leave":
-                return self.in_aisle and not drives
+                return self.in_aisle and aisle and not drives
             case "/dock_robot":
                 return both(self.at == "away", not drives, self.button.in_service)
         return both(self.at in ("docked", "undocking"), self.button.in_service)

@@ -22,7 +22,7 @@ EACH = pytest.mark.parametrize("name", slow_but(["line_follower", "supervised_li
 #: Commands of the agent. `benchmarks/guards.py` sends 10,000.
 COMMANDS, MOST = 500, 4000
 #: Statements without which a guard lets pass what must not pass, or blocks what may pass.
-PART = re.compile(r"^  (?:requirement|limit) .*\n(?:    .*\n)*", re.MULTILINE)
+PART = re.compile(r"^  (?:requirement|limit) .*\n(?:    .*\n)*(?:  \}.*\n)?", re.MULTILINE)
 #: The parts of each model, with the first scenario that it guards.
 PARTS = {
     (guarded.model, part): name
@@ -54,10 +54,7 @@ def test_a_trial_is_always_the_same() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "part"),
-    [
-        pytest.param(name, part, marks=[] if name == "line_follower" else [pytest.mark.matrix])
-        for (_, part), name in PARTS.items()
-    ],
+    [pytest.param(name, part, id=f"{name}-{' '.join(part.split()[1:3])}") for (_, part), name in PARTS.items()],
 )
 def test_a_missing_part_is_noticed(name: str, part: str, tmp_path: Path) -> None:
     model = GUARDED[name].model
