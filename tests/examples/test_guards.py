@@ -53,7 +53,7 @@ def test_nothing_is_wrong(name: str, tmp_path: Path) -> None:
 
 @EACH
 def test_a_random_agent_is_guarded(name: str) -> None:
-    """What must not pass does not reach the world, what may pass does, and nothing dangerous happens there."""
+    """Only permitted commands reach the world, all permitted ones do, and nothing dangerous happens there."""
     tally = trial_of(name).run(COMMANDS)
     assert tally.faults == []
     assert tally.commands == COMMANDS
