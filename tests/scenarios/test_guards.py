@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 import shutil
+from collections import Counter
 from typing import TYPE_CHECKING
 
 import pytest
 
 from examples.simulator.engine import load
-from examples.simulator.guarding import guard_scenario
+from examples.simulator.guarding import Tally, guard_scenario, report
 from examples.simulator.restless import GUARDED
 from examples.simulator.scenarios import SCENARIOS
 from examples.simulator.simulation import Simulation
@@ -73,3 +74,10 @@ def test_a_missing_part_is_noticed(name: str, part: str, tmp_path: Path) -> None
     (tmp_path / model.name).write_text(model.read_text(encoding="utf-8").replace(part, ""), encoding="utf-8")
     trial = guard_scenario(name, models=load(tmp_path / model.name))
     assert trial.run(MOST, until=lambda: bool(trial.tally.faults)).faults != []
+
+
+def test_an_objection_is_printed_and_ends_with_1(capsys: pytest.CaptureFixture[str]) -> None:
+    tally = Tally(Counter({"/cmd_vel": 1}), faults=["at 1.00: it must not pass"])
+    assert report("wheels", tally) == 1
+    assert "1 passed" in capsys.readouterr().out
+    assert report("wheels", Tally()) == 0
