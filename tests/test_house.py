@@ -34,7 +34,11 @@ LIBRARIES = {
     "joblib": {"tools"},
     "lsprotocol": {"tools"},
     "lz4": {"base"},
+    "anyio": {"tools"},
+    "jsonschema": {"tools"},
     "mcap": {"base"},
+    "mcp": {"tools"},
+    "mcp_types": {"tools"},
     "jinja2": {"base", "m2t"},
     "networkx": {"tools"},
     "oxidd": {"synthesis"},
@@ -184,6 +188,8 @@ OPENERS = {
     "model._ecore",
     "tools.cli.view",  # the browser
     "tools.view.page",
+    "tools.mcp.pages",
+    "tools.mcp.process",  # the null device, in place of the pipe to the server
     "run.node_tests.trace_test",
     "run.runtime.ros2.interfaces",  # a tool of its own, whose files are made for the generators
     "run.runtime.core.event_log",  # what `files.writing` has opened

@@ -113,26 +113,32 @@ def command(name: str, folder: str | None, yes: bool, guard: bool, **options: An
     _refuse_options(guard, options)
     asks = not yes and _on_terminal()
     if guard:
-        guarded = _guard_choices(name, options, asks=asks)
-        stem, texts = guarded.stem, dict(guard_files(guarded, RosTypes()))
+        choices: Choices | GuardChoices = _guard_choices(name, options, asks=asks)
     else:
         # Reject invalid names in the call before any prompt.
         _choices(name, options)
         choices = _choices(name, _ask(options) if asks else options)
-        stem, texts = choices.stem, dict(files(choices))
-    target = Path(folder or stem)
-    if os.path.lexists(target) and (not target.is_dir() or any(target.iterdir())):
-        raise CallError(f"{visible(str(target))} exists already and is not overwritten; choose another folder with -o")
-    model = f"{stem}.rscd"
-    laid_out, _ = format_text(Text(model, texts[model]))
-    assert laid_out is not None
-    write({target: texts | {model: laid_out}})
+    target = Path(folder or choices.stem)
+    texts = create(choices, target)
+    model = f"{choices.stem}.rscd"
     say(f"{visible(str(target))}: {', '.join(texts)}")
     if guard:
         with Report(aside=True) as report:
             read(str(target / model), Paths(), report)
     following = "check" if guard else "simulate"
     say(f"next: cd {visible(str(target))}; robosc {following} {model}")
+
+
+def create(choices: Choices | GuardChoices, target: Path) -> list[str]:
+    """Write the files of a new model to a folder, and return their names. Raises CallError if it is not empty."""
+    if os.path.lexists(target) and (not target.is_dir() or any(target.iterdir())):
+        raise CallError(f"{visible(str(target))} exists already and is not overwritten; choose another folder")
+    texts = dict(guard_files(choices, RosTypes()) if isinstance(choices, GuardChoices) else files(choices))
+    model = f"{choices.stem}.rscd"
+    laid_out, _ = format_text(Text(model, texts[model]))
+    assert laid_out is not None
+    write({target: texts | {model: laid_out}})
+    return list(texts)
 
 
 def _refuse_options(guard: bool, options: dict[str, Any]) -> None:
