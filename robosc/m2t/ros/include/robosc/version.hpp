@@ -4,6 +4,6 @@
 
 /// The namespace of all declarations in these headers, with a hash of their contents. One process may load packages
 /// generated with different headers, and the linker must not mix their symbols.
-#define ROBOSC_VERSION vc792bb0c
+#define ROBOSC_VERSION v8eba129d
 
 #endif  // ROBOSC_VERSION_HPP_
