@@ -42,7 +42,7 @@ LIBRARIES = {
     "jinja2": {"base", "m2t"},
     "networkx": {"tools"},
     "oxidd": {"synthesis"},
-    "pydantic": {"language"},
+    "pydantic": {"base", "language"},
     "pyecore": {"model"},
     "pygments": {"language"},
     "pygls": {"tools"},

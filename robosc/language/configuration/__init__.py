@@ -1,8 +1,7 @@
 """Settings of the generated code: `controller-config.json` (thesis section 5.4), read, checked and located."""
 
 import json
-import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from difflib import get_close_matches
 from pathlib import Path
@@ -13,6 +12,7 @@ from pydantic.alias_generators import to_camel
 
 from robosc.base.diagnostics import Diagnostic, ModelError, Severity, Span
 from robosc.base.files import reading as files
+from robosc.base.files.json_places import Key, duplicates, position, reason_of, span_of
 from robosc.base.files.json_reading import JsonError, json_value
 from robosc.model.semantics.naming import controller_name, layer_name, output_name, snake_case
 from robosc.model.semantics.roles import assumptions
@@ -44,12 +44,6 @@ ABSOLUTE_NAMES = 'the namespace %s does not apply to %s: see "absoluteNames" in 
 LICENSE_TEXTS = ("Apache-2.0", "BSD-3-Clause", "MIT")
 #: Maximum depth of folders below the model in the search for a configuration.
 SEARCH_DEPTH = 3
-
-#: Reasons for errors in which pydantic uses Python's names.
-_WRONG_TYPE = {"model_type": "be an object", "dict_type": "be an object", "list_type": "be an array"}
-
-#: Position of a value: keys of objects and indices of arrays, from the outside inwards.
-Key = tuple[str | int, ...]
 
 _Value = TypeVar("_Value")
 
@@ -306,7 +300,7 @@ class Configuration(_Settings):
 
         If the file does not have the key, the error is at the innermost key around it.
         """
-        return Diagnostic(self._file, _span(self._text, key), Severity.ERROR, RULE, message, hint)
+        return Diagnostic(self._file, span_of(self._text, key), Severity.ERROR, RULE, message, hint)
 
     def warning(self, key: Key, message: str, hint: str | None = None) -> Diagnostic:
         """Return a warning at a key of the configuration file."""
@@ -392,9 +386,9 @@ def read(file: Path) -> Configuration:
     except UnicodeDecodeError as error:
         raise ModelError([_error(name, f"not UTF-8: {error.reason} at byte {error.start}")]) from error
     except JsonError as error:
-        line, column = _position(text, error.position)
+        line, column = position(text, error.position)
         raise ModelError([_error(name, str(error), Span(line, column, line, column + 1), error.hint)]) from error
-    findings = [_error(name, f'the key "{key}" occurs twice', span) for key, span in _duplicates(text, _skip(text, 0))]
+    findings = [_error(name, f'the key "{key}" occurs twice', span) for key, span in duplicates(text)]
     try:
         configuration = Configuration.model_validate(values, context=(name, text), by_alias=True, by_name=False)
     except ValidationError as error:
@@ -426,15 +420,8 @@ def _error(file: str, message: str, span: Span | None = None, hint: str | None =
 def _explained(file: str, text: str, fault: Any) -> Diagnostic:
     """Return an error of pydantic as a finding that names the key."""
     key: Key = fault["loc"]
-    name = ".".join(str(part) for part in key)
-    span = _span(text, key)
-    if fault["type"] == "extra_forbidden":
-        return _error(file, f'unknown key "{name}"', span, _repair(key))
-    if fault["type"] == "missing":
-        return _error(file, f'the key "{name}" is missing', span)
-    reason = _WRONG_TYPE.get(fault["type"]) or re.sub("^(Input|String|Value error,) (should )?", "", fault["msg"])
-    reason = f"must {reason}" if fault["msg"].startswith(("Input", "String")) else reason
-    return _error(file, f'"{name}" {reason}' if name else f"the file {reason}", span)
+    hint = _repair(key) if fault["type"] == "extra_forbidden" else None
+    return _error(file, reason_of(fault), span_of(text, key), hint)
 
 
 def _one_of(name: str, known: Sequence[str]) -> str:
@@ -474,54 +461,3 @@ def _settings_in(annotation: Any) -> type[BaseModel] | None:
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return annotation
     return next((settings for settings in map(_settings_in, getattr(annotation, "__args__", ())) if settings), None)
-
-
-def _span(text: str, key: Key) -> Span:
-    """Return the span of a key in a JSON text. If it is missing, return that of the innermost key around it."""
-    start = end = inside = _skip(text, 0)
-    for name in key:
-        entry = next((entry for entry in _entries(text, inside) if entry[0] in (name, f"/{name}")), None)
-        if entry is None:
-            break
-        _, start, end, inside = entry
-    return _between(text, start, end)
-
-
-def _duplicates(text: str, start: int) -> Iterator[tuple[str, Span]]:
-    names: set[str | int] = set()
-    for name, begin, end, inside in _entries(text, start):
-        if name in names:
-            yield str(name), _between(text, begin, end)
-        names.add(name)
-        yield from _duplicates(text, inside)
-
-
-def _entries(text: str, start: int) -> Iterator[tuple[str | int, int, int, int]]:
-    """Iterate over the members of the object or array at `start`: key or index, start and end of it, start of value."""
-    if text[start] not in "{[":
-        return
-    place, at = 0, _skip(text, start + 1)
-    while text[at] not in "}]":
-        name, begin, value = place, at, at
-        end = None
-        if text[start] == "{":
-            name, end = json.JSONDecoder().raw_decode(text, at)
-            value = _skip(text, _skip(text, end) + 1)
-        _, after = json.JSONDecoder().raw_decode(text, value)
-        yield name, begin, end or after, value
-        at = _skip(text, after)
-        at = _skip(text, at + 1) if text[at] == "," else at
-        place += 1
-
-
-def _skip(text: str, start: int) -> int:
-    """Return the position of the next nonblank character."""
-    return next((at for at in range(start, len(text)) if text[at] not in " \t\r\n"), len(text))
-
-
-def _between(text: str, start: int, end: int) -> Span:
-    return Span(*_position(text, start), *_position(text, end))
-
-
-def _position(text: str, offset: int) -> tuple[int, int]:
-    return text.count("\n", 0, offset) + 1, offset - text.rfind("\n", 0, offset)

@@ -71,6 +71,7 @@ _HEADERS = {
     "robosc_ros{ros}/countdown": {"controller", "waits"},
     "robosc_ros{ros}/finite": {"composes", "hands_on"},
     "robosc_ros{ros}/controller_node": {"controller"},
+    "robosc_ros{ros}/graph_monitor": {"layer", "ros2"},
     "robosc_ros{ros}/guarded_node": {"layer", "ros2"},
     "robosc_ros{ros}/managed_node": {"controller", "managed", "ros2"},
     "robosc_ros{ros}/message_relay": {"layer", "topics"},

@@ -65,7 +65,6 @@ def statuses(graph: rosgraph.RosGraph, node: GeneratedNode, gates: Mapping[rosgr
     actions = {client.request.event: client for client in node.clients if client.cancel}
     failing = {message.event for _, message in node.sent if message.may_fail}
     reported = {component.name: component for component in node.reported}
-    topics = {sending: publisher.topic for publisher in graph.publishers for sending in publisher.sendings}
     words = Names()
     return [
         Status(
@@ -87,7 +86,7 @@ def statuses(graph: rosgraph.RosGraph, node: GeneratedNode, gates: Mapping[rosgr
             [heard[topic] for topic in parts.topics],
             [called[client] for client in parts.clients],
             [served[server] for server in parts.servers],
-            list(dict.fromkeys(topics[sending] for sending in parts.commands if sending in topics)),
+            [publisher.topic for publisher in parts.publishers],
         )
         for parts in components(graph)
         for component in [reported.get(string_literal(parts.name))]

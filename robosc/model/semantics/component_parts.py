@@ -34,6 +34,22 @@ class Parts:
     topics: Sequence[rosgraph.Subscription]
     clients: Sequence[rosgraph.ServiceClient | rosgraph.ActionClient]
     servers: Sequence[rosgraph.ServiceServer | rosgraph.ActionServer]
+    #: Topics of the commands.
+    publishers: Sequence[rosgraph.Publisher]
+
+    @property
+    def connections(
+        self,
+    ) -> list[
+        rosgraph.Subscription
+        | rosgraph.Publisher
+        | rosgraph.ServiceClient
+        | rosgraph.ActionClient
+        | rosgraph.ServiceServer
+        | rosgraph.ActionServer
+    ]:
+        """All topics, services and actions of the component in the ROS graph."""
+        return [*self.topics, *self.publishers, *self.clients, *self.servers]
 
 
 def components(graph: rosgraph.RosGraph) -> list[Parts]:
@@ -55,6 +71,7 @@ def components(graph: rosgraph.RosGraph) -> list[Parts]:
     for name in [*topics, *commands, *served]:
         plants.setdefault(name, None)
     stored = reported_variables(graph)
+    publishers = {sending: publisher for publisher in graph.publishers for sending in publisher.sendings}
     return [
         Parts(
             name,
@@ -64,6 +81,7 @@ def components(graph: rosgraph.RosGraph) -> list[Parts]:
             topics.get(name, []),
             called.get(name, []),
             served.get(name, []),
+            list(dict.fromkeys(publishers[sending] for sending in commands.get(name, []) if sending in publishers)),
         )
         for name, plant in plants.items()
     ]

@@ -164,6 +164,10 @@ class Robot:
         """Return nothing: there is no other node."""
         return []
 
+    def calling_nodes(self, client: Client) -> list[str]:  # noqa: ARG002  # a trace has no other nodes
+        """Return nothing: there is no other node."""
+        return []
+
     def endpoints(self) -> dict[rosgraph.Subscription | rosgraph.Publisher, list[Endpoint]]:
         """Return nothing: there is no other node."""
         return {}

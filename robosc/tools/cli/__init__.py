@@ -54,6 +54,7 @@ _GROUPS = {
     "Generate and run": {
         "transform": "Generate code and models.",
         "run": "Run the controller as a ROS node, without building it.",
+        "graph": "Write the nodes of the running ROS system as JSON.",
         "interfaces": "Build ROS 2 types of your own, without colcon.",
     },
     "Editors": {

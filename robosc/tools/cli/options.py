@@ -40,6 +40,25 @@ class _File(click.Path):
 #: An existing file.
 FILE = _File(exists=True, dir_okay=False, readable=True)
 
+#: Value of options for a node graph: the running one.
+LIVE = "live"
+
+
+class _GraphSource(_File):
+    """An existing file with a node graph, or `live`."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        return value if value == LIVE else super().convert(value, param, ctx)
+
+
+#: An existing file with a node graph, or `live`.
+GRAPH = _GraphSource(exists=True, dir_okay=False, readable=True)
+
+#: Names of the nodes that are the robot, for commands with a graph.
+robot_nodes = click.option(
+    "--robot", "robot", multiple=True, metavar="NODE", help="Node of the robot, with `*` for any text; repeatable."
+)
+
 model = click.argument("model", type=FILE)
 
 _library_path = click.option(

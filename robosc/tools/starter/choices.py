@@ -49,8 +49,9 @@ class Choices:
 
     def fault(self) -> str | None:
         """Return the fault of a name with a hint, or None if all names are valid."""
-        if not _ROBOT.fullmatch(self.name):
-            return f"`{self.name}` cannot name a robot: use letters, digits and single `_`, such as `Porter`"
+        fault = robot_fault(self.name)
+        if fault:
+            return fault
         names = [*self.sensors, *self.commands, *([self.service] if self.service else [])]
         for name in names:
             if not _COMMUNICATION.fullmatch(name):
@@ -63,6 +64,13 @@ class Choices:
         components = [camel(name) for name in self.sensors]
         alike = next((name for name in self.sensors if components.count(camel(name)) > 1), None)
         return f"`{alike}` is too similar to another name: use another name" if alike else None
+
+
+def robot_fault(name: str) -> str | None:
+    """Return the fault of a robot's name with a hint, or None if it is valid."""
+    if _ROBOT.fullmatch(name):
+        return None
+    return f"`{name}` cannot name a robot: use letters, digits and single `_`, such as `Porter`"
 
 
 def camel(name: str) -> str:

@@ -151,8 +151,8 @@ def test_leaves_out_what_is_not_asked_for(usher: robosc.Models, tmp_path: Path) 
     files = robosc.generate(TARGET, models_of(ear), Configuration(diagnostics_ms=0))
     headers = {path for path in files if path.startswith("include")}
     robosc_headers = ("callback_guard", "data", "event_log", "hangup", "json", "queue_depth", "transitions", "version")
-    over_ros = ("arrivals", "countdown", "durabilities", "guarded_node", "message_relay", "node_services")
-    over_ros += ("parameters", "report")
+    over_ros = ("arrivals", "countdown", "durabilities", "graph_monitor", "guarded_node", "message_relay")
+    over_ros += ("node_services", "parameters", "report")
     assert headers == {
         "include/ear_layer/definition.hpp",
         *(f"include/robosc/{name}.hpp" for name in robosc_headers),

@@ -88,6 +88,8 @@ class FakePort:
     others: dict[Any, list[Endpoint]] = field(default_factory=dict)
     #: Nodes and types, of each service and action.
     servers: list[tuple[str, str]] = field(default_factory=list)
+    #: Other nodes that call each service and action.
+    callers: list[str] = field(default_factory=list)
     hearing: int = 1
     #: Messages that have arrived and are not handled yet.
     arrived: list[Callable[[], None]] = field(default_factory=list)
@@ -144,6 +146,9 @@ class FakePort:
 
     def serving_nodes(self, client: object) -> list[tuple[str, str]]:
         return self.servers
+
+    def calling_nodes(self, client: object) -> list[str]:
+        return self.callers
 
     def endpoints(self) -> dict[Any, list[Endpoint]]:
         return self.others

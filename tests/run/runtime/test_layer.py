@@ -16,7 +16,7 @@ from robosc.model.semantics.messages import find_message
 from robosc.run.runtime.core.cancel_requests import GoalTimes
 from robosc.run.runtime.core.event_loop import EventLoop
 from robosc.run.runtime.core.layer import Layer
-from robosc.run.runtime.core.port import Failure, GoalOutcome
+from robosc.run.runtime.core.port import Endpoint, Failure, GoalOutcome
 from robosc.run.runtime.core.proxies import ActionProxy, ProxiedGoal
 from robosc.run.runtime.core.settings import SafeMessages, Settings
 from tests.run.runtime.fake import FakePort, Record, supervised
@@ -257,3 +257,28 @@ def test_warnings_of_what_is_blocked_are_throttled(bench: Bench) -> None:
     bench.port.time += 5
     assert not bench.passes("speed")
     assert len(bench.port.said) == 3
+
+
+def test_nodes_that_go_around_the_layer_are_reported_once_and_while_it_lasts(bench: Bench) -> None:
+    publisher = next(known for known in bench.graph.publishers if known.topic == "/speed")
+
+    def look() -> set[str]:
+        bench.port.statuses.clear()
+        for _ in range(20):
+            bench.port.time += 0.1
+            bench.event_loop.run_pending()
+        (*_, last) = bench.port.statuses
+        return {text for status in last for text in [status.message] if "around" in text and status.level == "WARN"}
+
+    assert look() == set()
+    bench.port.others = {publisher: [Endpoint("/teleop", "std_msgs/Float32"), Endpoint("", "std_msgs/Float32")]}
+    bench.port.callers = ["/planner"]
+    around = [
+        "/speed: /teleop publishes it, too, around this layer",
+        "/lamp/light: /planner calls it, too, around this layer",
+        "/go_to: /planner sends goals, too, around this layer",
+    ]
+    assert look() == {"has no states; " + around[0], "lamp; " + around[1], "resting; " + around[2]}
+    bench.port.others, bench.port.callers = {}, []
+    assert look() == set()
+    assert [text for text in bench.port.said if "around" in text] == around

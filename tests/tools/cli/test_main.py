@@ -31,6 +31,7 @@ COMMANDS = [
     "test",
     "transform",
     "run",
+    "graph",
     "interfaces",
     "lsp",
     "dap",

@@ -388,10 +388,6 @@ class Controller(EventHandler):
     def _faults(self, parts: Parts) -> list[str]:
         silent = [topic for topic in parts.topics if topic in self._watchdogs and self._watchdogs[topic].tripped]
         unheard = [topic for topic in parts.topics if topic in self._unheard]
-        commanded = dict.fromkeys(self._publishers.get(sending) for sending in parts.commands)
-        watched: list[rosgraph.Subscription | rosgraph.Publisher | Client | Server] = [*parts.topics]
-        watched += [publisher for publisher in commanded if publisher is not None]
-        watched += [*parts.clients, *parts.servers]
         failed = [(client.identifier, self._failures[client].why) for client in parts.clients]
         failed += [
             (client.identifier, self._starters[client].trouble) for client in parts.clients if client in self._starters
@@ -401,7 +397,7 @@ class Controller(EventHandler):
         return [
             *(f"{topic.topic} is silent" for topic in silent),
             *(f"{topic.topic} was not heard yet" for topic in unheard),
-            *(fault for element in watched for fault in self._monitor.faults(element)),
+            *(fault for element in parts.connections for fault in self._monitor.faults(element)),
             *(f"{name}: {why}" for name, why in failed if why),
             *(f"{name} is withheld" for name in withheld),
         ]

@@ -12,6 +12,7 @@ from robosc.model.semantics.roles import assumption_text, event_name
 from robosc.run.runtime.core.composer import Composer
 from robosc.run.runtime.core.event_handler import EventHandler
 from robosc.run.runtime.core.event_log import ReceivedData
+from robosc.run.runtime.core.monitors import GraphMonitor
 from robosc.run.runtime.core.node_data import UNSENDABLE, why_unsendable
 from robosc.run.runtime.core.settings import SafeMessages
 from robosc.run.runtime.core.times import RESOLUTION_MS
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from robosc.model.semantics.component_parts import Parts
     from robosc.run.runtime.core.event_loop import EventLoop
     from robosc.run.runtime.core.json_text import Json
-    from robosc.run.runtime.core.port import ControllerPort, Message
+    from robosc.run.runtime.core.port import Client, ControllerPort, Message
     from robosc.run.runtime.core.settings import Settings
 
 
@@ -58,6 +59,8 @@ class Layer(EventHandler):
             for _, _, sending in sent_messages(graph)
             if sending.inputs
         }
+        called: list[Client] = [*graph.serviceClients, *graph.actionClients]
+        self._monitor = GraphMonitor(port, event_loop, called, layer=True)
         #: Messages of `on_blocked` that were forwarded last: the layer sends one when it blocks the next.
         self._forwarded: set[rosgraph.Sending] = set()
 
@@ -66,6 +69,7 @@ class Layer(EventHandler):
         self._reports.publish_definition()
         self._warn_of_report()
         self._times.start()
+        self._monitor.start()
         with self._times:
             self._control.settle()
         self._publish_state()
@@ -157,7 +161,8 @@ class Layer(EventHandler):
             for client in parts.clients
             if isinstance(client, rosgraph.ActionClient) and client.cancel in self.goals
         ]
-        return [*blocked, *(f"{name}: {trouble}" for name, trouble in troubles if trouble)]
+        unfit = [fault for element in parts.connections for fault in self._monitor.faults(element)]
+        return [*blocked, *unfit, *(f"{name}: {trouble}" for name, trouble in troubles if trouble)]
 
     # Events
 

@@ -18,6 +18,8 @@ _PERIOD = 1.0
 _PATIENCE = 5
 #: Looks for which two nodes of one name may serve: a killed and restarted node is listed twice for 20 s.
 _LEASE = 25
+#: End of a warning about commands that do not pass the layer.
+AROUND = ", around this layer"
 #: Why a call or goal has failed if only such a server exists.
 OTHER_TYPE = "the server has another type"
 
@@ -62,13 +64,17 @@ class GraphMonitor:
     Each fault is logged once, and `faults` has it as long as it lasts: another type, a quality of service that does not
     fit, no publisher for five seconds, another publisher on a topic that the controller commands, a server of another
     type if there is none of the right one, and several servers of the right type, the controller among them if it
-    serves.
+    serves. If the node is a layer, another publisher goes around it, and so do other clients of its services and
+    actions.
     """
 
-    def __init__(self, port: ControllerPort, loop: EventLoop, called: Sequence[Client | Server] = ()) -> None:
+    def __init__(
+        self, port: ControllerPort, loop: EventLoop, called: Sequence[Client | Server] = (), *, layer: bool = False
+    ) -> None:
         self._port = port
         self._loop = loop
         self._called = called
+        self._layer = layer
         self._missing: dict[str, int] = {}
         self._twice: Counter[Client | Server] = Counter()
         self._other_types: set[Client | Server] = set()
@@ -97,6 +103,8 @@ class GraphMonitor:
                 self._check_publisher(element, endpoints)
         for called in self._called:
             self._check_servers(called)
+            if self._layer and isinstance(called, rosgraph.ServiceClient | rosgraph.ActionClient):
+                self._check_callers(called)
         self.start()
 
     def _check_subscription(self, subscription: rosgraph.Subscription, endpoints: list[Endpoint]) -> None:
@@ -114,7 +122,13 @@ class GraphMonitor:
             if endpoint.listens:
                 self._compare(publisher, endpoint, "expects", "asks for")
             elif endpoint.node:
-                self._note(publisher, f"{publisher.topic}: {endpoint.node} publishes it, too")
+                around = AROUND if self._layer else ""
+                self._note(publisher, f"{publisher.topic}: {endpoint.node} publishes it, too{around}")
+
+    def _check_callers(self, client: Client) -> None:
+        does = "sends goals" if isinstance(client, rosgraph.ActionClient) else "calls it"
+        for node in self._port.calling_nodes(client):
+            self._note(client, f"{client.identifier}: {node} {does}, too{AROUND}")
 
     def _check_servers(self, called: Client | Server) -> None:
         serving = self._port.serving_nodes(called)

@@ -158,7 +158,8 @@ class RunningNode(ControllerPort, ABC):
             proxy = ServiceProxy(self, self.event_loop, service, layer, settings.seconds("service_timeout_ms"))
             self.serve(self._types[service.interface], self.inside(service.identifier), proxy.call)
         for action in self._graph.actionClients:
-            layer.goals[action.cancel] = self._proxy(action, layer, settings.seconds("action_timeout_ms"))
+            proxied = self._proxy(action, layer, settings.seconds("action_timeout_ms"))
+            layer.goals[action.cancel] = self._clients[action] = proxied
 
     def spin(self, handler: EventHandler) -> None:
         """Run a handler until the user interrupts it; stop it before the node ends."""

@@ -190,8 +190,11 @@ class ControllerPort(Port, Protocol):
     def serving_nodes(self, element: Client | Server) -> Sequence[tuple[str, str]]:
         """Return the nodes that serve the name of a service or action, each with its type.
 
-        A single server of the right type may be left out.
+        A single server of the right type may be left out. The types are as old as the last call of `endpoints`.
         """
+
+    def calling_nodes(self, client: Client) -> Sequence[str]:
+        """Return the other nodes that call a service or send goals to an action."""
 
     def endpoints(self) -> Mapping[rosgraph.Subscription | rosgraph.Publisher, list[Endpoint]]:
         """Return the other publishers on the node's topics, and the subscriptions to its own publishers."""

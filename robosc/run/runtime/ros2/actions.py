@@ -217,9 +217,13 @@ class Ros2ActionProxy(ActionProxy[_Goal]):
 
     # Interface to the layer
 
+    def server_is_ready(self) -> bool:
+        """Return whether the robot offers the action."""
+        return bool(self._goals.service_is_ready())
+
     def _is_served(self, goal: _Goal) -> bool:
         if not goal.accepted:
-            return bool(self._goals.service_is_ready())
+            return self.server_is_ready()
         goal.looks += 1
         # A server that has died and its successor offer the same services.
         if goal.looks % LOOKS == 0:

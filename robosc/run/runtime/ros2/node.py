@@ -116,6 +116,8 @@ class Ros2Node(RunningNode):
         self._served: list[Ros2ActionServer] = []
         self._qualities: dict[rosgraph.Subscription | rosgraph.Publisher, Any] = {}
         self._durabilities = _Durabilities(self.node)
+        #: Types by the names of services since the last look at the topics, None if unknown.
+        self._services: Mapping[str, Sequence[str]] | None = None
 
     def _load_type(self, interface: rosgraph.Interface) -> Any:
         message_type = super()._load_type(interface)
@@ -282,7 +284,11 @@ class Ros2Node(RunningNode):
     ) -> _Relay:
         sent = quality.forwarding(element.topic, self._configuration)
         route = _Route(self._types[element.interface], source, target, self._reception(element), sent)
-        return _Relay(self, self._durabilities, route, forwarded)
+
+        def open_side(received: Any, sending: Any) -> None:
+            self._qualities[element] = sending if isinstance(element, rosgraph.Publisher) else received
+
+        return _Relay(self, self._durabilities, route, forwarded, open_side)
 
     def type_name(self, interface: rosgraph.Interface) -> str:
         return f"{interface.package}/{FOLDERS[interface.kind.name]}/{interface.type}"
@@ -293,21 +299,38 @@ class Ros2Node(RunningNode):
         name = self.node.resolve_service_name(element.identifier + part[0])
         own = self.type_name(element.interface) + part[1]
         # The types of clients are among these; the exact list of servers takes longer.
-        types = dict(self.node.get_service_names_and_types()).get(name, ())
+        if self._services is None:
+            self._services = dict(self.node.get_service_names_and_types())
+        types = self._services.get(name, ())
         if set(types) <= {own} and self.node.count_services(name) <= 1:
             return []
+        served = self._nodes_with(name, self.node.get_service_names_and_types_by_node)
+        return [(node, kind.removesuffix(part[1])) for node, kinds in served for kind in kinds]
+
+    def calling_nodes(self, client: Client) -> list[str]:
+        is_action = isinstance(client, rosgraph.ActionClient)
+        name = self.node.resolve_service_name(client.identifier + (_SENDING if is_action else ""))
+        # The exact list of clients takes longer.
+        if self.node.count_clients(name) <= 1:
+            return []
+        called = self._nodes_with(name, self.node.get_client_names_and_types_by_node)
+        return [node for node, _ in called if node != self.full_name]
+
+    def _nodes_with(self, name: str, services_of: Callable[[str, str], Any]) -> list[tuple[str, Sequence[str]]]:
+        """Return the nodes that serve or call a service, with its types there."""
         nodes = []
         for node, space in self.node.get_node_names_and_namespaces():
             try:
-                served = dict(self.node.get_service_names_and_types_by_node(node, space))
+                types = dict(services_of(node, space)).get(name)
             except NodeNameNonExistentError:
                 continue  # it has just gone
-            full_name = f"{space.rstrip('/')}/{node}"
-            nodes += [(full_name, kind.removesuffix(part[1])) for kind in served.get(name, ())]
+            if types:
+                nodes.append((f"{space.rstrip('/')}/{node}", types))
         return nodes
 
     def endpoints(self) -> dict[rosgraph.Subscription | rosgraph.Publisher, list[Endpoint]]:
         self._durabilities.look()
+        self._services = None
         return {element: self._endpoints(element) for element in self._topics}
 
     def _endpoints(self, element: rosgraph.Subscription | rosgraph.Publisher) -> list[Endpoint]:
@@ -510,28 +533,36 @@ class _Relay:
     """
 
     def __init__(
-        self, port: Ros2Node, durabilities: _Durabilities, route: _Route, forwarded: Callable[[Message], Message | None]
+        self,
+        port: Ros2Node,
+        durabilities: _Durabilities,
+        route: _Route,
+        forwarded: Callable[[Message], Message | None],
+        opened: Callable[[Any, Any], None],
     ) -> None:
         self._port = port
         node = self._node = port.node
         self._route = route
         self._forwarded = forwarded
+        self._opened = opened
         self._lasting = False
         self._subscription: QueuedSubscription | None = None
         self._publisher = node.create_publisher(route.kind, route.target, _qos(route.sent))
+        opened(_qos(route.received), _qos(route.sent))
         durabilities.watch(node.resolve_topic_name(route.source), self._open)
 
     def _open(self, lasting: bool) -> None:
         node, route = self._node, self._route
+        sent = _qos(route.sent.latched if lasting else route.sent)
         if lasting != self._lasting:
             self._lasting = lasting
             node.destroy_publisher(self._publisher)
-            sent = route.sent.latched if lasting else route.sent
-            self._publisher = node.create_publisher(route.kind, route.target, _qos(sent))
+            self._publisher = node.create_publisher(route.kind, route.target, sent)
         if self._subscription is not None:
             self._subscription.close()
-        received = route.received.latched if lasting else route.received.volatile
-        self._subscription = self._port.listen(route.kind, route.source, self._forward, _qos(received))
+        received = _qos(route.received.latched if lasting else route.received.volatile)
+        self._opened(received, sent)
+        self._subscription = self._port.listen(route.kind, route.source, self._forward, received)
 
     def _forward(self, message: Message) -> None:
         forwarded = self._forwarded(message)

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <rclcpp/rclcpp.hpp>
+#include <rosidl_runtime_cpp/traits.hpp>
 
 #include "robosc/callback_guard.hpp"
 #include "robosc/version.hpp"
@@ -21,7 +22,8 @@ namespace robosc {
 inline namespace ROBOSC_VERSION {
 
 /// Checks once a second the other nodes on the node's topics and the servers of its calls. Reports once by name each
-/// fault that prevents communication. `faults` returns a fault as long as it lasts.
+/// fault that prevents communication. `faults` returns a fault as long as it lasts. For a layer, it also reports nodes
+/// that go around it.
 class GraphMonitor {
  public:
   template <typename Node>
@@ -58,9 +60,16 @@ class GraphMonitor {
     commanded_.push_back({topic, type, quality, own});
   }
 
-  /// Adds a service that the node calls, which may be a part of an action.
-  void call(const std::string& name, const std::string& part, const std::string& type) {
-    called_.push_back({name, services_->resolve_service_name(name + part), type});
+  /// Adds a topic of commands that a layer forwards. It must be their only publisher.
+  template <typename Message>
+  void guard(const std::string& topic) {
+    guarded_.push_back({topic, rosidl_generator_traits::name<Message>(), rclcpp::QoS(1), {}});
+  }
+
+  /// Adds a service that the node calls, which may be a part of an action. `guarded`: only a layer may call it.
+  void call(const std::string& name, const std::string& part, const std::string& type, bool guarded = false) {
+    const std::string verb = part.empty() ? "calls it" : "sends goals";
+    called_.push_back({name, services_->resolve_service_name(name + part), type, guarded ? verb : ""});
   }
 
   /// The faults of a topic, service or action at the last check.
@@ -88,7 +97,8 @@ class GraphMonitor {
     std::string name;
     std::string service;
     std::string type;
-    int twice = 0;  ///< Number of checks with two servers of one name.
+    std::string verb;  ///< What other clients do that go around a layer. Empty: they may.
+    int twice = 0;     ///< Number of checks with two servers of one name.
   };
 
   void look() {
@@ -97,8 +107,13 @@ class GraphMonitor {
     try {
       for (Topic& topic : heard_) look_at_publishers(topic);
       for (const Topic& topic : commanded_) look_at_listeners(topic);
-      for (Called& called : called_) look_at_servers(called);
-    } catch (const rclcpp::exceptions::RCLError&) {
+      for (const Topic& topic : guarded_) look_around(topic);
+      if (!called_.empty()) types_ = graph_->get_service_names_and_types();
+      for (Called& called : called_) {
+        look_at_servers(called);
+        if (!called.verb.empty()) look_at_callers(called);
+      }
+    } catch (const std::exception&) {
       // The context is closed: the node is at its end.
     }
   }
@@ -124,15 +139,45 @@ class GraphMonitor {
     for (const auto& other : graph_->get_publishers_info_by_topic(topic.name)) {
       if (!is_own(topic, other) && !is_nameless(other)) tell(topic.name, name(other) + " publishes it, too");
     }
+    look_at_subscriptions(topic, topic.quality);
+  }
+
+  void look_at_subscriptions(const Topic& topic, const rclcpp::QoS& offered) {
     for (const auto& other : graph_->get_subscriptions_info_by_topic(topic.name)) {
       if (is_nameless(other)) continue;
-      if (fits(topic, other, "expects")) meets(topic, other, topic.quality, other.qos_profile(), "asks for");
+      if (fits(topic, other, "expects")) meets(topic, other, offered, other.qos_profile(), "asks for");
+    }
+  }
+
+  void look_around(const Topic& topic) {
+    for (const auto& other : graph_->get_publishers_info_by_topic(topic.name)) {
+      if (is_self(other)) {
+        look_at_subscriptions(topic, other.qos_profile());
+      } else if (!is_nameless(other)) {
+        tell(topic.name, name(other) + " publishes it, too, around this layer");
+      }
+    }
+  }
+
+  void look_at_callers(const Called& called) {
+    // To find the clients takes longer.
+    if (count_clients(*graph_, called, 0) <= 1) return;
+    for (const auto& [node, space] : graph_->get_node_names_and_namespaces()) {
+      try {
+        const std::string client = full_name(space, node);
+        const auto services = graph_->get_client_names_and_types_by_node(node, space);
+        if (client != self_ && services.count(called.service) > 0) {
+          tell(called.name, client + " " + called.verb + ", too, around this layer");
+        }
+      } catch (const std::exception&) {
+        // The node has just left.
+      }
     }
   }
 
   void look_at_servers(Called& called) {
     // These types include those of clients. To find the servers takes longer.
-    const auto types = graph_->get_service_names_and_types()[called.service];
+    const auto& types = types_[called.service];
     const auto is_other = [&](const std::string& type) { return type != called.type; };
     const bool may_be_single = std::none_of(types.begin(), types.end(), is_other) && count(*graph_, called, 0) <= 1;
     std::vector<std::string> servers, others;
@@ -184,6 +229,17 @@ class GraphMonitor {
   }
   template <typename Graph>
   static std::size_t count(const Graph&, const Called&, long) {
+    return 2;
+  }
+
+  /// The number of clients. Several if rclcpp can't count them (before Iron).
+  template <typename Graph>
+  static auto count_clients(const Graph& graph, const Called& called, int)
+      -> decltype(graph.count_clients(called.service)) {
+    return graph.count_clients(called.service);
+  }
+  template <typename Graph>
+  static std::size_t count_clients(const Graph&, const Called&, long) {
     return 2;
   }
 
@@ -243,7 +299,9 @@ class GraphMonitor {
   rclcpp::node_interfaces::NodeServicesInterface::SharedPtr services_;
   std::vector<Topic> heard_;
   std::vector<Topic> commanded_;
+  std::vector<Topic> guarded_;
   std::vector<Called> called_;
+  std::map<std::string, std::vector<std::string>> types_;  ///< Types of services at the last check.
   std::map<std::string, std::vector<std::string>> faults_;
   std::set<std::string> other_types_;
   std::set<std::string> told_;

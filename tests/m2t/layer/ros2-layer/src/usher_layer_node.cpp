@@ -37,6 +37,7 @@
 #include "robosc/throttle.hpp"
 #include "robosc/transitions.hpp"
 #include "robosc_ros2/action_proxy.hpp"
+#include "robosc_ros2/graph_monitor.hpp"
 #include "robosc_ros2/guarded_node.hpp"
 #include "robosc_ros2/message_relay.hpp"
 #include "robosc_ros2/parameters.hpp"
@@ -156,6 +157,15 @@ class Layer : public GuardedNode<rclcpp::Node> {
     go_to_proxy_ = std::make_unique<ActionProxy<nav2_msgs::action::NavigateToPose>>(
         *this, guard_, "~/controller/go_to", "/go_to",
         rclcpp::QoS(10).keep_last(20).best_effort(), action_timeout, go_to_handlers);
+    monitor_.hear("/stop", rosidl_generator_traits::name<std_msgs::msg::Empty>(), rclcpp::QoS(10));
+    monitor_.hear("/resume", rosidl_generator_traits::name<std_msgs::msg::Empty>(), rclcpp::QoS(10).best_effort());
+    monitor_.hear("battery", rosidl_generator_traits::name<std_msgs::msg::Int16>(), rclcpp::QoS(10));
+    monitor_.hear("/scan", rosidl_generator_traits::name<sensor_msgs::msg::LaserScan>(), rclcpp::SensorDataQoS());
+    monitor_.guard<std_msgs::msg::Float32>("/speed");
+    monitor_.guard<std_msgs::msg::String>("label");
+    monitor_.call("/lamp/light", "", rosidl_generator_traits::name<std_srvs::srv::SetBool>(), true);
+    monitor_.call("/go_to", "/_action/send_goal",
+        rosidl_generator_traits::name<nav2_msgs::action::NavigateToPose::Impl::SendGoalService>(), true);
     const std::string space = get_namespace();
     const std::string outside = names_outside(space, {
         {"/stop", get_node_topics_interface()->resolve_topic_name("/stop")},
@@ -505,6 +515,9 @@ class Layer : public GuardedNode<rclcpp::Node> {
     ComponentStatus<Status> status(get_fully_qualified_name(), "Usher", "Guard", state);
     status.add("state", state);
     status.add("charge", Integer(supervisor_.state.component_Guard_charge));
+    for (const std::string& fault : monitor_.faults("/stop")) status.warn(fault);
+    for (const std::string& fault : monitor_.faults("/resume")) status.warn(fault);
+    for (const std::string& fault : monitor_.faults("battery")) status.warn(fault);
     return status.made();
   }
 
@@ -513,6 +526,7 @@ class Layer : public GuardedNode<rclcpp::Node> {
     ComponentStatus<Status> status(get_fully_qualified_name(), "Usher", "Scanner", state);
     status.add("state", state);
     status.add("second", data_.Scanner.second);
+    for (const std::string& fault : monitor_.faults("/scan")) status.warn(fault);
     return status.made();
   }
 
@@ -523,6 +537,7 @@ class Layer : public GuardedNode<rclcpp::Node> {
     status.add("lit", data_.Lamp.lit);
     status.add("request to light", verdict(usher_service_light_c_trigger, against_light()));
     if (blocked_.count(usher_service_light_c_trigger) > 0) status.warn("light was blocked");
+    for (const std::string& fault : monitor_.faults("/lamp/light")) status.warn(fault);
     return status.made();
   }
 
@@ -533,6 +548,7 @@ class Layer : public GuardedNode<rclcpp::Node> {
     status.add("seen", literal_name(data_.Navigation.seen));
     status.add("request to go_to", verdict(usher_action_go_to_c_trigger, against_go_to()));
     if (blocked_.count(usher_action_go_to_c_trigger) > 0) status.warn("go_to was blocked");
+    for (const std::string& fault : monitor_.faults("/go_to")) status.warn(fault);
     if (const std::string trouble = go_to_proxy_->trouble(); !trouble.empty()) status.warn("/go_to: " + trouble);
     return status.made();
   }
@@ -543,6 +559,8 @@ class Layer : public GuardedNode<rclcpp::Node> {
     status.add("request to label", verdict(usher_message_label_c_trigger, BlockReasons()));
     if (blocked_.count(usher_message_speed_c_trigger) > 0) status.warn("speed was blocked");
     if (blocked_.count(usher_message_label_c_trigger) > 0) status.warn("label was blocked");
+    for (const std::string& fault : monitor_.faults("/speed")) status.warn(fault);
+    for (const std::string& fault : monitor_.faults("label")) status.warn(fault);
     return status.made();
   }
 
@@ -573,6 +591,7 @@ class Layer : public GuardedNode<rclcpp::Node> {
   std::set<usher_event> blocked_;  // Since the last report on /diagnostics.
   std_msgs::msg::Float32 speed_message_;
   bool speed_forwarded_ = false;  // Since it was blocked last.
+  GraphMonitor monitor_{*this, guard_};
   std::unique_ptr<MessageRelay<std_msgs::msg::Empty>> stop_relay_;
   std::unique_ptr<MessageRelay<std_msgs::msg::Empty>> resume_relay_;
   std::unique_ptr<MessageRelay<std_msgs::msg::Int16>> battery_relay_;
