@@ -54,6 +54,7 @@ _GROUPS = {
     "Generate and run": {
         "transform": "Generate code and models.",
         "run": "Run the controller as a ROS node, without building it.",
+        "gate": "Let a language model or another program command a robot, behind its supervisor.",
         "interfaces": "Build ROS 2 types of your own, without colcon.",
     },
     "Editors": {
