@@ -116,9 +116,12 @@ def served(folder: Path, *options: str) -> Iterator[tuple[str, list[str]]]:
 @asynccontextmanager
 async def connected(address: str, token: str, mode: str) -> AsyncIterator[Client]:
     """Connect a client with a token."""
-    async with httpx2.AsyncClient(headers={"Authorization": f"Bearer {token}"}, timeout=_PATIENCE) as http:
-        async with Client(streamable_http_client(address, http_client=http), mode=mode) as client:
-            yield client
+    headers = {"Authorization": f"Bearer {token}"}
+    async with (
+        httpx2.AsyncClient(headers=headers, timeout=_PATIENCE) as http,
+        Client(streamable_http_client(address, http_client=http), mode=mode) as client,
+    ):
+        yield client
 
 
 def test_two_clients_over_http(tmp_path: Path) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import json
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -16,12 +15,11 @@ from tests.tools.gate.bench import PORTER, call, connect, gate, models
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable
+    from pathlib import Path
 
     from mcp import Client
 
-    from robosc.tools.gate.commands import UnknownTypeError, commands, tool_name
-from robosc.tools.gate.shapes import faults_of
-from tests.tools.gate.bench import Bench
+    from tests.tools.gate.bench import Bench
 
 #: Data with faults, for a tool.
 HOSTILE: list[tuple[str, Any, str]] = [
@@ -306,5 +304,5 @@ def test_names_of_tools_are_unlike() -> None:
 def test_commands_need_known_types(tmp_path: Path) -> None:
     text = PORTER.read_text(encoding="utf-8").replace("SetBool from std_srvs", "SetLamp from lamp_srvs")
     (tmp_path / "porter.rscd").write_text(text, encoding="utf-8")
-    with pytest.raises(UnknownTypeError, match="Lamp.light: lamp_srvs/SetLamp is unknown in ROS 2"):
+    with pytest.raises(UnknownTypeError, match=r"Lamp\.light: lamp_srvs/SetLamp is unknown in ROS 2"):
         commands(models(tmp_path / "porter.rscd"))
