@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from robosc.tools.mcp.pages import pages
+
 pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).parent.parent
@@ -56,6 +58,10 @@ def test_what_is_in_the_wheel(wheel: Path) -> None:
         ]
         assert here
         assert {f"{place}/{name}" for name in here} - inside == set()
+    assert {f"robosc/{page.name}" for page in pages()} - inside == set()
+    pages_and_examples = ("robosc/docs/", "robosc/examples/")
+    entries = zipfile.ZipFile(wheel).infolist()
+    assert sum(entry.compress_size for entry in entries if entry.filename.startswith(pages_and_examples)) < 500_000
     version = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     assert version["requires-python"] == ">=3.11"
     assert any(name.endswith(".dist-info/licenses/LICENSE") for name in inside)
@@ -124,6 +130,8 @@ def test_the_installed_wheel_generates_the_same(wheel: Path, tmp_path: Path) -> 
     assert Path(where).is_relative_to(tmp_path)
     run(programs / "robosc", "transform", "line_follower.rscd", "--to", TARGETS, "-o", "out", cwd=model)
     run(programs / "robosc", "rule", "marked-state", cwd=model)
+    listed = "from robosc.tools.mcp.pages import pages; print(*(page.name for page in pages()))"
+    assert run(programs / "python", "-c", listed, cwd=model).split() == [page.name for page in pages()]
     if any((ROOT / "robosc" / "tools" / "view" / "built").glob("page.js")):
         run(*install, f"{wheel}[view]", cwd=model)
         assert "smoke test passed" in run(ROOT / "scripts" / "smoke", tmp_path / "environment", cwd=model)

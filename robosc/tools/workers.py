@@ -157,12 +157,17 @@ def _begin(parent: int) -> None:
 
     On Linux, the process gets SIGTERM when its parent ends, and removes its temporary folders.
     """
+    end_with_parent(parent)
+    sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: PTH123, SIM115
+
+
+def end_with_parent(parent: int) -> None:
+    """Ignore interrupts, and on Linux end this process by SIGTERM when its parent ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGTERM, 0, 0, 0)
         if os.getppid() != parent:  # The parent has ended before the call.
             os._exit(1)
-    sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: PTH123, SIM115
 
 
 @contextmanager

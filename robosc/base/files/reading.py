@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
 #: Maximum size of a file. A model of 100,000 lines has 4 MB, a saved one with the deepest expression 72 MB.
 MOST_BYTES = 128 << 20
@@ -29,6 +29,8 @@ _KINDS = {
 _Identity = tuple[int, int]
 #: Inputs that were read within `record_inputs`: from their identity to the path by which each was named.
 _noted: ContextVar[dict[_Identity, str] | None] = ContextVar("noted", default=None)
+#: Folders and trusted folders of `read_only_below`, or None if all files may be read.
+_readable: ContextVar[tuple[Sequence[Path], Sequence[Path]] | None] = ContextVar("readable", default=None)
 
 
 def read(path: str | os.PathLike[str], *, is_input: bool = True) -> bytes:
@@ -46,6 +48,7 @@ def open_file(path: str | os.PathLike[str], *, is_input: bool = True, buffering:
     """Open a regular file of any size for binary reading; `is_input` is as for `read`. Raises OSError."""
     name = os.fspath(path)
     try:
+        _require_readable(name)
         _require_regular(Path(name).stat(), name)
         # Between the two calls, the file may be replaced by another kind, which must not block either.
         descriptor = os.open(name, os.O_RDONLY | _CAUTIOUS)
@@ -89,6 +92,30 @@ def input_name(status: os.stat_result) -> str | None:
 def inputs() -> list[str]:
     """Return the names of all files that were read within `record_inputs`, in the order of their first reading."""
     return list((_noted.get() or {}).values())
+
+
+@contextmanager
+def read_only_below(folders: Sequence[Path], trusted: Sequence[Path]) -> Iterator[None]:
+    """Read no file outside of these folders within the `with` block; `open_file` raises PermissionError.
+
+    Links that lead out of `folders` are not followed. Links in `trusted` folders may lead anywhere.
+    """
+    token = _readable.set(([folder.resolve() for folder in folders], [folder.absolute() for folder in trusted]))
+    try:
+        yield
+    finally:
+        _readable.reset(token)
+
+
+def _require_readable(name: str) -> None:
+    readable = _readable.get()
+    if readable is None:
+        return
+    folders, trusted = readable
+    path, real = Path(name).absolute(), Path(os.path.realpath(name))
+    is_trusted = ".." not in path.parts and any(path.is_relative_to(folder) for folder in trusted)
+    if not is_trusted and not any(real.is_relative_to(folder) for folder in folders):
+        raise PermissionError(errno.EACCES, "this is outside of the folders that may be read", name)
 
 
 def kind(mode: int) -> str:

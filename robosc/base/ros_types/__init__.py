@@ -70,6 +70,11 @@ class RosDistribution:
         self._known: dict[tuple[str, str, Section], Fields | None] = {}
         self._named: dict[tuple[str, str], list[str]] = {}
 
+    @property
+    def folders(self) -> list[Path]:
+        """The user's own folders and those of the installation."""
+        return [share.folder for share in self._folders]
+
     @cached_property
     def _sources(self) -> list[Share | ShippedTypes]:
         from robosc.base.ros_types.rosbags_types import ShippedTypes  # takes long to load

@@ -33,6 +33,11 @@ class Share:
         self._folder = folder
         self._fields: dict[Path, list[Fields]] = {}
 
+    @property
+    def folder(self) -> Path:
+        """The folder itself."""
+        return self._folder
+
     def fields(self, package: str, name: str, section: Section) -> Fields | None:
         """Return the fields of a section of a type, or None if the folder has no such type.
 
@@ -95,11 +100,6 @@ class Workspace(Share):
         for name, root in self._definitions():
             packages.setdefault(name, []).append(root)
         return packages
-
-    @property
-    def folder(self) -> Path:
-        """The folder itself."""
-        return self._folder
 
     @property
     def is_too_large(self) -> bool:

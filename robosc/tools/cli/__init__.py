@@ -61,6 +61,9 @@ _GROUPS = {
         "lsp": "Serve an editor: findings, completion, and more.",
         "dap": "Debug a robot in an editor.",
     },
+    "Assistants": {
+        "mcp": "Serve an assistant that writes models.",
+    },
 }
 _COMMANDS = {name: summary for group in _GROUPS.values() for name, summary in group.items()}
 #: Commands whose module has another name: the module `report` collects findings.

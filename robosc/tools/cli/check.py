@@ -73,9 +73,23 @@ class _CheckedModel(NamedTuple):
 
 
 def _mend(model: str, paths: Paths) -> None:
-    """Apply the edits of findings to a text, repeatedly, unless they make it worse."""
+    """Apply the edits of findings to a file."""
     if not model.endswith(".rscd"):
         raise CallError(f"{model} is not a .rscd file: --fix edits only text")
+    with record_inputs():
+        written = files.read(model)
+    content, count = mended(model, written, paths)
+    if count:
+        write_file(model, content)
+        say(f"{visible(model)}: {count} edit{'s' * (count != 1)}", err=True)
+
+
+def mended(model: str, written: bytes, paths: Paths) -> tuple[str, int]:
+    """Return the text of a `.rscd` file after the edits of findings, and their number.
+
+    The edits are applied repeatedly, unless they make the text worse. A text that is not UTF-8 stays unchanged: the
+    bytes that cannot be decoded would be lost.
+    """
     interfaces = RosTypes(paths.interfaces)
 
     def checked(content: str) -> _CheckedModel:
@@ -84,12 +98,10 @@ def _mend(model: str, paths: Paths) -> None:
             reading = read_text(model, paths.libraries, interfaces, Documents({model: content}))
         return _CheckedModel(reading, [*reading.findings, *rules_of(reading.base, reading.findings, interfaces)])
 
-    with record_inputs():
-        written = files.read(model)
     try:
-        content = before = written.decode("utf-8")
+        content = written.decode("utf-8")
     except UnicodeDecodeError:
-        return  # writing the text would lose the bytes that cannot be decoded
+        return written.decode("utf-8", errors="replace"), 0
     seen = {content}
     count = 0
     for _ in range(_ROUNDS):
@@ -103,9 +115,7 @@ def _mend(model: str, paths: Paths) -> None:
         seen.add(after)
         content = after
         count += len(edits)
-    if content != before:
-        write_file(model, content)
-        say(f"{visible(model)}: {count} edit{'s' * (count != 1)}", err=True)
+    return content, count
 
 
 def _check(models: Sequence[str], form: str, paths: Paths) -> None:

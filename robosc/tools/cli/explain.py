@@ -84,20 +84,23 @@ def command(
         plants = read_models(model, paths, report, cif=True).sct
         supervise_otherwise(plants)
         with progress("exploring the states of the robot"):
-            answer = explore(plants, emptiness if why_empty else _question(plants, event, state, why_never))
+            answer = explore(plants, emptiness if why_empty else question(plants, event, state, why_never))
         if answer is None and not why_empty:
             supervise(plants)  # raises with the cause
         elif as_data:
-            put(json.dumps(data_of(answer, _position), indent=2))
+            put(json.dumps(data_of(answer, position), indent=2))
         else:
-            renderer = Renderer(plants, lambda element: visible("{file}:{line}:{column}".format(**_position(element))))
+            renderer = Renderer(plants, lambda element: visible("{file}:{line}:{column}".format(**position(element))))
             say(renderer.answer(answer))
 
 
-def _question(
+def question(
     model: sct.SupervisoryControlModel, event: str | None, state: str | None, why_never: str | None
 ) -> Callable[[SynthesizedSystem], Explanation | Possibility | None]:
-    """Return the analysis that answers the question. Its result is None if the supervisor is empty."""
+    """Return the analysis that answers the question. Its result is None if the supervisor is empty.
+
+    Raises CallError for an unknown event or state.
+    """
     try:
         event_in_question = find_event(model, event or why_never or "")
         codes = {} if state is None else parse_state(model, state)
@@ -112,6 +115,7 @@ def _question(
     return answer
 
 
-def _position(element: Any) -> dict[str, Any]:
+def position(element: Any) -> dict[str, Any]:
+    """Return the place of an element in its file."""
     file, span = place(element)
     return {"file": file, "line": span.line, "column": span.column}

@@ -56,15 +56,21 @@ def command(name: str, folder: str | None, yes: bool, **options: Any) -> None:
     _choices(name, options)
     choices = _choices(name, options if yes or not _on_terminal() else _ask(options))
     target = Path(folder or choices.stem)
+    texts = create(choices, target)
+    say(f"{visible(str(target))}: {', '.join(texts)}")
+    say(f"next: cd {visible(str(target))}; robosc simulate {choices.stem}.rscd")
+
+
+def create(choices: Choices, target: Path) -> list[str]:
+    """Write the files of a new robot to a folder, and return their names. Raises CallError if it is not empty."""
     if os.path.lexists(target) and (not target.is_dir() or any(target.iterdir())):
-        raise CallError(f"{visible(str(target))} exists already and is not overwritten; choose another folder with -o")
+        raise CallError(f"{visible(str(target))} exists already and is not overwritten; choose another folder")
     texts = dict(files(choices))
     model = f"{choices.stem}.rscd"
     laid_out, _ = format_text(Text(model, texts[model]))
     assert laid_out is not None
     write({target: texts | {model: laid_out}})
-    say(f"{visible(str(target))}: {', '.join(texts)}")
-    say(f"next: cd {visible(str(target))}; robosc simulate {model}")
+    return list(texts)
 
 
 def _choices(name: str, options: dict[str, Any]) -> Choices:

@@ -19,6 +19,7 @@ from robosc.tools.cli.options import chosen_synthesizer
 
 if TYPE_CHECKING:
     from robosc.language.configuration import Configuration
+    from robosc.language.text import Documents
     from robosc.synthesis import Synthesis, Tuning
     from robosc.tools.cli.options import Paths
     from robosc.tools.cli.report import Report
@@ -26,8 +27,10 @@ if TYPE_CHECKING:
     Root = rsc.Base | sct.SupervisoryControlModel | rosgraph.RosGraph
 
 
-def read(path: str, paths: Paths, report: Report) -> Root | None:
+def read(path: str, paths: Paths, report: Report, documents: Documents | None = None) -> Root | None:
     """Return the model in a file of any kind. All findings of reading and of the rules go to the report.
+
+    `documents` are texts that replace `.rscd` files.
 
     None if the file is too damaged to contain a model. Raises ModelError for an XMI file with faults.
     """
@@ -65,7 +68,7 @@ def read(path: str, paths: Paths, report: Report) -> Root | None:
         root, findings = specification.model, specification.findings
         report.add(findings, specification.texts)
     else:
-        reading = read_text(path, paths.libraries, interfaces)
+        reading = read_text(path, paths.libraries, interfaces, documents)
         root, findings = reading.base, reading.findings
         report.add(findings, reading.texts)
     if isinstance(root, rsc.Base):
@@ -103,8 +106,12 @@ def read_configuration(model: str, chosen: str | None, report: Report) -> Config
     return config.read(file)
 
 
-def read_models(path: str, paths: Paths, report: Report, *, cif: bool = False) -> Models:
+def read_models(
+    path: str, paths: Paths, report: Report, *, cif: bool = False, documents: Documents | None = None
+) -> Models:
     """Return the models of the robot in a file: the sct model in it, or created from it, and all others.
+
+    `documents` are texts that replace `.rscd` files.
 
     Ends the report if there are errors. Raises CallError for a library, and for CIF if the call does not support it.
     """
@@ -114,7 +121,7 @@ def read_models(path: str, paths: Paths, report: Report, *, cif: bool = False) -
             f"{path} is {what}, which has no ROS graph and no control loop: `check`, `synthesize`, `explain`, `verify`,"
             " `simulate`, `diagram` and `transform --to cif,supervisor,xmi` take it"
         )
-    root = read(path, paths, report)
+    root = read(path, paths, report, documents)
     if isinstance(root, rsc.Library):
         raise CallError(f"{path} has a library: only a robot that imports it has a supervisor")
     report.stop_on_errors()

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import json
 import os
 from contextlib import suppress
 from functools import partial
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import click
 
 from robosc.base.diagnostics import ModelError, has_errors
 from robosc.base.files import reading as files
-from robosc.tools.cli import EMPTY_SUPERVISOR, ERRORS_FOUND, put
+from robosc.tools.cli import EMPTY_SUPERVISOR, ERRORS_FOUND, as_call_error, put
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -106,6 +107,29 @@ class Report:
             with suppress(OSError):
                 self.texts[file] = files.read(file).decode("utf-8", errors="replace")
         return self.texts.get(file)
+
+
+def attempt(work: Callable[[Report], int]) -> tuple[int, str | None, list[Any]]:
+    """Return the exit status that `work` would have as a command, its error, and its findings as objects.
+
+    `work` gets a report that prints nothing, and returns its status without errors.
+    """
+    report = Report("none")
+    status, error = 0, None
+    try:
+        with report:
+            status = work(report)
+    except click.exceptions.Exit as end:
+        status = end.exit_code
+    except click.ClickException as fault:
+        status, error = fault.exit_code, fault.format_message()
+    except Exception as fault:
+        failed = as_call_error(fault)
+        status, error = failed.exit_code, failed.format_message()
+    from robosc.base.diagnostics import as_json
+
+    findings: list[Any] = json.loads(as_json.render(report.findings))
+    return status, error, findings
 
 
 def _paint(part: Part, text: str) -> str:

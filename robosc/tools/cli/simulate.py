@@ -27,6 +27,7 @@ from robosc.tools.cli.report import Report
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from robosc.language.configuration import Configuration
     from robosc.m2t.models import Models
 
 
@@ -80,10 +81,12 @@ def command(
     with Report(aside=True) as report:
         models = read_models(model, paths, report, cif=not loop)
         set_parameters(models.rosgraph, parameter_texts)
-        settings = _settings(model, chosen, report) if loop else None
+        settings = loop_settings(read_configuration(model, chosen, report)) if loop else None
         supervise_models(models, report)
         if script is not None:
-            answers = _played(models, script, settings, report)
+            name = "<stdin>" if script == "-" else script
+            content = files.read_stdin(name) if script == "-" else files.read(script)
+            answers = play(models, name, content, settings, report)
         else:
             simulation = Simulation(models.sct, models.rosgraph, models.ros_types)
     if script is not None:
@@ -96,15 +99,20 @@ def command(
         _converse(simulation, seed)
 
 
-def _settings(model: str, chosen: str | None, report: Report) -> Settings:
-    loop = read_configuration(model, chosen, report).control_loop
+def loop_settings(configuration: Configuration) -> Settings:
+    """Return the settings of the control loop in a configuration."""
+    loop = configuration.control_loop
     return Settings(loop.events_per_tick, loop.reactions_per_tick, loop.react_immediately)
 
 
-def _played(models: Models, script: str, settings: Settings | None, report: Report) -> Iterator[dict[str, Any]]:
-    """Return the answer to each line of a script. Errors in the script go to the report and end it."""
-    name = "<stdin>" if script == "-" else script
-    decoded, faults = decode(name, files.read_stdin(name) if script == "-" else files.read(script))
+def play(
+    models: Models, name: str, content: bytes, settings: Settings | None, report: Report
+) -> Iterator[dict[str, Any]]:
+    """Return the answer to each line of a script, which findings call `name`.
+
+    With `settings`, the control loop runs between the lines. Errors in the script go to the report and end it.
+    """
+    decoded, faults = decode(name, content)
     report.add([replace(fault, rule=RULE) for fault in faults], {name: decoded.content})
     report.stop_on_errors()
     text = decoded.content

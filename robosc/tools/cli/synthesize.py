@@ -189,11 +189,19 @@ def _show_changes(model: sct.SupervisoryControlModel, changes: dict[str, Any]) -
         say("no guard and no requirement changes")
 
 
-def _count(model: sct.SupervisoryControlModel, memory: int, times: int, *, as_json: bool) -> None:
+def count_states(
+    model: sct.SupervisoryControlModel, memory: int, times: int = 1
+) -> tuple[Counts | Synthesis, dict[str, Any]]:
+    """Return the numbers of states of a supervised model, as such and as `--counts --json` prints them."""
     with show_progress(model) as statistics:
         counted = count(model, memory=memory, statistics=statistics, tuning=chosen_tuning(model))
+    return counted, _counts(model, counted, statistics, times)
+
+
+def _count(model: sct.SupervisoryControlModel, memory: int, times: int, *, as_json: bool) -> None:
+    counted, answer = count_states(model, memory, times)
     if as_json:
-        put(json.dumps(_counts(model, counted, statistics, times), indent=2))
+        put(json.dumps(answer, indent=2))
     else:
         say(_states(model, counted, times))
     if not counted.controlled_states:
@@ -218,7 +226,12 @@ def _counts(
 
 
 def _show_json(model: sct.SupervisoryControlModel, synthesis: Diagnosis, times: int) -> None:
-    answer = _counts(
+    put(json.dumps(as_object(model, synthesis, times), indent=2))
+
+
+def as_object(model: sct.SupervisoryControlModel, synthesis: Diagnosis, times: int = 1) -> dict[str, Any]:
+    """Return the object that `--json` prints: states, requirements, events with their guards, and the cost."""
+    return _counts(
         model,
         synthesis,
         synthesis.statistics,
@@ -226,7 +239,6 @@ def _show_json(model: sct.SupervisoryControlModel, synthesis: Diagnosis, times: 
         requirements=[_weight(weight) for weight in synthesis.weights],
         events=_events(model, synthesis),
     )
-    put(json.dumps(answer, indent=2))
 
 
 def _events(model: sct.SupervisoryControlModel, synthesis: Synthesis) -> list[dict[str, Any]]:

@@ -15,7 +15,6 @@ import click
 import robosc
 from robosc.analysis.verify.c_program import CProgram, c_compiler
 from robosc.base.diagnostics import Severity, as_junit, as_text
-from robosc.base.files import reading as files
 from robosc.base.files.writing import refuse, temporary_folder, write, write_file
 from robosc.base.ros_types import RosTypes
 from robosc.language.checks import check
@@ -50,7 +49,7 @@ from robosc.tools.cli.report import Report
 from robosc.tools.workers import completed
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from robosc.base.diagnostics import Diagnostic
     from robosc.language.configuration import Configuration
@@ -133,6 +132,8 @@ class Call:
     form: str = "text"
     paths: Paths = field(default_factory=Paths)
     jobs: int = 1
+    #: Texts that replace the model or the scenarios.
+    documents: Documents = field(default_factory=Documents)
 
 
 @dataclass
@@ -186,7 +187,7 @@ def play_all(call: Call, report: Report, runs: list[Run]) -> None:
 
 def _prepare(call: Call, report: Report) -> tuple[Models, Configuration, Player, list[Scenario]]:
     """Return the supervised models of a call, their configuration, a player, and the scenarios, all without errors."""
-    models, expressions, scenarios = _read(call.model, call.scenarios, call.paths, report)
+    models, expressions, scenarios = _read(call, report)
     settings = read_configuration(call.model, call.chosen, report)
     report.stop_on_errors()
     supervise_models(models, report)
@@ -252,43 +253,54 @@ def _junit(runs: Sequence[Run], texts: Mapping[str, str]) -> str:
     return as_junit.render("robosc test", cases)
 
 
-def _read(
-    path: str, names: Sequence[str], paths: Paths, report: Report
-) -> tuple[Models, Mapping[Holds, ex.Expression], list[Scenario]]:
+def as_objects(runs: Iterable[Run]) -> list[dict[str, Any]]:
+    """Return the result of each scenario: its place, its name, and whether it passed."""
+    return [
+        {
+            "file": run.scenario.line.file,
+            "line": run.scenario.line.span.line,
+            "name": run.scenario.name,
+            "passed": not run.findings,
+        }
+        for run in runs
+    ]
+
+
+def _read(call: Call, report: Report) -> tuple[Models, Mapping[Holds, ex.Expression], list[Scenario]]:
     """Return the models of a robot, its scenarios, and the expressions of their conditions. Errors go to the report."""
-    plain = read_models(path, paths, report)
+    plain = read_models(call.model, call.paths, report, documents=call.documents)
     scenarios: list[Scenario] = []
     conditions: list[Holds] = []
-    for name in names:
-        text, faults = decode(name, files.read(name))
+    for name in call.scenarios:
+        text, faults = decode(name, call.documents.read(Path(name)))
         more_scenarios, expected, findings = read_scenarios(name, text.content)
         report.add([*(replace(fault, rule=RULE) for fault in faults), *findings], {name: text.content})
         scenarios += more_scenarios
         conditions += expected
     report.add(unknown_events(plain.sct, scenarios))
-    return (*_resolve_conditions(path, plain, conditions, paths, report), scenarios)
+    return (*_resolve_conditions(call, plain, conditions, report), scenarios)
 
 
 def _resolve_conditions(
-    path: str, plain: Models, conditions: Sequence[Holds], paths: Paths, report: Report
+    call: Call, plain: Models, conditions: Sequence[Holds], report: Report
 ) -> tuple[Models, Mapping[Holds, ex.Expression]]:
     """Return models with which the conditions can be evaluated, and their expressions in these models."""
     if not conditions:
         return plain, {}
-    text, _ = decode(path, files.read(path))
+    text, _ = decode(call.model, call.documents.read(Path(call.model)))
     assert plain.robosc is not None
     span = plain.robosc.source.span  # type: ignore[union-attr]  # a model from a text has a place
     end = text.offset(span.end_line, span.end_column)
     longer = add_conditions(text.content, end, conditions, Instances(plain.robosc).fleet_texts)
-    types = RosTypes(paths.interfaces)
-    reading = read_text(path, paths.libraries, types, Documents({path: longer.text}))
+    types = RosTypes(call.paths.interfaces)
+    reading = read_text(call.model, call.paths.libraries, types, Documents({call.model: longer.text}))
     findings = [*reading.findings, *(check(reading.base, reading.findings, types) if reading.base else ())]
     report.add(longer.move_to_scenario(finding) for finding in findings if finding.severity is Severity.ERROR)
     report.stop_on_errors()
     robot: rsc.Robot = reading.base  # type: ignore[assignment]  # equal except for the properties
     model = robosc.to_sct(robot)
     meant = dict(zip(conditions, longer.expressions(model), strict=True))
-    return Models(model, robosc.to_rosgraph(robot, paths.interfaces), robot), meant
+    return Models(model, robosc.to_rosgraph(robot, call.paths.interfaces), robot), meant
 
 
 def _live(models: Models, settings: Configuration, player: Player, node: str | None) -> LiveNode:

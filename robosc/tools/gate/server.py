@@ -8,10 +8,10 @@ import logging
 import sys
 import threading
 from contextlib import contextmanager, suppress
-from functools import partial
 from hmac import compare_digest
 from typing import TYPE_CHECKING, Any
 
+import anyio
 import mcp_types as types
 import uvicorn
 from mcp.server.lowlevel import Server
@@ -22,10 +22,11 @@ from starlette.responses import PlainTextResponse
 
 from robosc import __version__
 from robosc.tools.gate.gate import ERRORS, refusal
+from robosc.tools.mcp.stdio import Lines
 
 if TYPE_CHECKING:
     import socket
-    from collections.abc import AsyncIterator, Callable, Coroutine, Iterator, Sequence
+    from collections.abc import Callable, Coroutine, Iterator, Sequence
 
     from mcp.server.context import CallNext, HandlerResult, ServerRequestContext
     from starlette.types import ASGIApp, Receive, Scope, Send
@@ -92,7 +93,7 @@ def server(gate: Gate, client_of: Callable[[ServerRequestContext[Any, Any]], str
     made: Server[Any] = Server(
         "robosc gate", version=__version__, instructions=_INSTRUCTIONS, on_list_tools=list_tools, on_call_tool=call_tool
     )
-    made.middleware.append(log_malformed)
+    made.middleware[:] = [log_malformed]  # without that which reports each call to OpenTelemetry
     # The log of calls has what clients do wrong.
     logging.getLogger("mcp").addHandler(logging.NullHandler())
     logging.getLogger("mcp").propagate = False
@@ -145,35 +146,37 @@ async def _beside(gate: Gate, serve: Coroutine[Any, Any, None]) -> None:
 async def serve_stdio(gate: Gate) -> None:
     """Serve the client on standard input and output until it leaves."""
     made = server(gate)
-    lines: Any = _Lines(gate)
-    async with stdio_server(lines) as (received, sent):
+    messages: Any = _Messages(gate)
+    async with stdio_server(anyio.wrap_file(messages)) as (received, sent):
         await made.run(received, sent, made.create_initialization_options())
     await gate.leave(STDIO)
 
 
-class _Lines:
-    """Lines of standard input. A line that is too long, or no JSON, is logged as a refused call and left out."""
+class _Messages:
+    """Lines of standard input that are JSON; others, and those that are too long, are logged as refused calls."""
 
     def __init__(self, gate: Gate) -> None:
         self._gate = gate
-        # Data that is too large gets an answer, as long as its line can be read.
-        self._longest = 4 * gate.limits.largest + 65_536
+        self._lines = Lines(sys.stdin.buffer, _most_bytes(gate), self._drop)
 
-    async def __aiter__(self) -> AsyncIterator[str]:
-        read = partial(sys.stdin.buffer.readline, self._longest)
-        while line := await asyncio.to_thread(read):
-            if len(line) == self._longest and not line.endswith(b"\n"):
-                while line and not line.endswith(b"\n"):
-                    line = await asyncio.to_thread(read)
-                self._gate.note(STDIO, "", None, refusal("size", f"a line of more than {self._longest} bytes"))
-                continue
-            text = line.decode("utf-8", errors="replace")
+    def readline(self) -> str:
+        """Return the next line; an empty text at the end."""
+        while line := self._lines.readline():
             try:
-                json.loads(text)
+                json.loads(line)
             except (ValueError, RecursionError):
-                self._gate.note(STDIO, "", text, refusal("schema", "a line that is no JSON"))
+                self._gate.note(STDIO, "", line, refusal("schema", "a line that is no JSON"))
             else:
-                yield text
+                return line
+        return ""
+
+    def _drop(self, most: int) -> None:
+        self._gate.note(STDIO, "", None, refusal("size", f"a line of more than {most} bytes"))
+
+
+def _most_bytes(gate: Gate) -> int:
+    """Return the maximum size of a message: data that is too large still gets an answer, unless it is far too large."""
+    return 4 * gate.limits.largest + 65_536
 
 
 async def serve_http(gate: Gate, listening: socket.socket, tokens: Sequence[str], ready: Callable[[], None]) -> None:
@@ -185,9 +188,8 @@ async def serve_http(gate: Gate, listening: socket.socket, tokens: Sequence[str]
             ready()
 
     made = server(gate, _client)
-    largest = 4 * gate.limits.largest + 65_536
     served = made.streamable_http_app(
-        streamable_http_path=PATH, max_request_body_size=largest, max_sessions=_MOST_SESSIONS
+        streamable_http_path=PATH, max_request_body_size=_most_bytes(gate), max_sessions=_MOST_SESSIONS
     )
     configuration = uvicorn.Config(
         _Guarded(served, tokens, gate),

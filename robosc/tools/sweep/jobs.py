@@ -11,14 +11,11 @@ from random import Random
 from time import perf_counter, process_time
 from typing import TYPE_CHECKING, Any
 
-import click
-
 from robosc import __version__
 from robosc.analysis.supervise import Supervision, supervise
 from robosc.analysis.verify import Outcome, verify
 from robosc.analysis.verify.properties import requirement_name
 from robosc.analysis.verify.verdict import as_json
-from robosc.base.diagnostics import as_json as findings_as_json
 from robosc.base.files import reading as files
 from robosc.base.files.writing import temporary_folder
 from robosc.language import configuration
@@ -26,17 +23,18 @@ from robosc.model import sct
 from robosc.model.semantics.evaluation import evaluate
 from robosc.run.simulation import Simulation
 from robosc.run.simulation.session import trace_line
-from robosc.tools.cli import ERRORS_FOUND, as_call_error
+from robosc.tools.cli import ERRORS_FOUND
 from robosc.tools.cli.options import Paths
 from robosc.tools.cli.reading import read, read_models
-from robosc.tools.cli.report import Report
-from robosc.tools.cli.test import Call, play_all
+from robosc.tools.cli.report import Report, attempt
+from robosc.tools.cli.test import Call, as_objects, play_all
 from robosc.tools.sweep.variants import is_shipped
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from robosc.m2t.models import Models
+    from robosc.tools.cli.test import Run
 
 #: Ends of the names of files that count in a folder with ROS types.
 _DEFINITIONS = (".msg", ".srv", ".action", "package.xml", "_IGNORE")
@@ -132,20 +130,8 @@ def perform(job: Job) -> dict[str, Any]:
 def _attempted(job: Job, inside: Callable[[str], str]) -> tuple[int, dict[str, Any], str | None, list[Any]]:
     """Return the exit status that the command alone would have, its result, its error, and its findings."""
     paths = Paths(*([inside(path) for path in own] for own in (job.paths.libraries, job.paths.interfaces)))
-    report = Report("none")
-    status, error = 0, None
     result: dict[str, Any] = {}
-    try:
-        with report:
-            status = _COMMANDS[job.command](job, inside, paths, report, result)
-    except click.exceptions.Exit as end:
-        status = end.exit_code
-    except click.ClickException as fault:
-        status, error = fault.exit_code, fault.format_message()
-    except Exception as fault:
-        failed = as_call_error(fault)
-        status, error = failed.exit_code, failed.format_message()
-    findings: list[Any] = json.loads(findings_as_json.render(report.findings))
+    status, error, findings = attempt(lambda report: _COMMANDS[job.command](job, inside, paths, report, result))
     return status, result, error, findings
 
 
@@ -194,18 +180,10 @@ def _test(job: Job, inside: Callable[[str], str], paths: Paths, report: Report, 
     if job.seed is not None:
         return _walk(job, inside, paths, report, result)
     scenarios = [inside(scenario) for scenario in job.scenarios]
-    runs: list[Any] = []
+    runs: list[Run] = []
     config = inside(job.config) if job.config else None
     play_all(Call(inside(job.model), scenarios, dict(job.settings)["engine"], chosen=config, paths=paths), report, runs)
-    result["scenarios"] = [
-        {
-            "file": run.scenario.line.file,
-            "line": run.scenario.line.span.line,
-            "name": run.scenario.name,
-            "passed": not run.findings,
-        }
-        for run in runs
-    ]
+    result["scenarios"] = as_objects(runs)
     return 0
 
 

@@ -31,6 +31,7 @@ COMMANDS = [
     "test",
     "transform",
     "run",
+    "gate",
     "interfaces",
     "lsp",
     "dap",

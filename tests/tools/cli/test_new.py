@@ -93,7 +93,7 @@ def test_nothing_is_written_over(run: Run, tmp_path: Path) -> None:
     kept.write_text("mine")
     answer = run("new", "Porter")
     assert answer.exit_code == 2
-    assert answer.stderr == "Error: porter exists already and is not overwritten; choose another folder with -o\n"
+    assert answer.stderr == "Error: porter exists already and is not overwritten; choose another folder\n"
     assert [path.name for path in kept.parent.iterdir()] == ["notes.txt"]
     (tmp_path / "file").write_text("")
     (tmp_path / "link").symlink_to("nowhere")
