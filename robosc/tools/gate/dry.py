@@ -357,13 +357,13 @@ def read_script(path: str, events: Mapping[str, RobotEvent]) -> list[Step]:
         except JsonError as error:
             faults.append(f"{path}:{number}: {error}")
             continue
-        found = faults_of(shape, entry)
-        if not found:
+        wrong = faults_of(shape, entry)
+        if not wrong:
             event, data = events[entry["event"]], entry.get("data", {})
-            found = faults_of(event.shape, data)
+            wrong = faults_of(event.shape, data)
             now += entry.get("after", 0)
-            steps.append(Step(now, event, {} if found else event.shape.converted(data)))
-        faults += [f"{path}:{number}: {fault}" for fault in found]
+            steps.append(Step(now, event, {} if wrong else event.shape.converted(data)))
+        faults += [f"{path}:{number}: {fault}" for fault in wrong]
     if faults:
         raise ScriptError("\n".join(faults))
     return steps

@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable, Mapping, Sequence
 
     from robosc.analysis.explain import Explanation
-    from robosc.analysis.system import Codes
     from robosc.model import sct
     from robosc.run.runtime.core.event_log import EventLog
     from robosc.run.runtime.core.gate import GatedGoal, GatedLayer, Outcome
@@ -257,15 +256,15 @@ class Gate:
         return {**answer, "possible": possible} if possible else answer
 
     async def _why(self, _: str, data: dict[str, Any]) -> dict[str, Any]:
-        command, given = self._commands[data["command"]], data.get("data")
-        if given is not None:
-            faults = faults_of(command.shape, given)
+        command, example = self._commands[data["command"]], data.get("data")
+        if example is not None:
+            faults = faults_of(command.shape, example)
             if faults:
                 return {"verdict": "explained", "allowed": False, **_without_verdict(refusal("schema", *faults))}
-            given = command.shape.converted(given)
+            example = command.shape.converted(example)
 
         def look() -> Outcome | None:
-            return self.layer.verdict(command.sending, None if given is None else self._message(command, given))
+            return self.layer.verdict(command.sending, None if example is None else self._message(command, example))
 
         outcome = await self._on_node(look)
         if outcome is None:
@@ -279,7 +278,7 @@ class Gate:
 
     async def _explanation(self, event: sct.Event) -> Explanation | None:
         """Return the explanation of a command in the present state; None if it takes too long or too much memory."""
-        codes: Codes = {**await self._on_node(lambda: self.layer.codes)}
+        codes: dict[Any, int] = await self._on_node(lambda: dict(self.layer.codes))
         key = event, tuple(codes.values())
         if key not in self._explained:
             if len(self._explained) == _MOST_EXPLAINED:
@@ -352,11 +351,11 @@ class Gate:
         return {"verdict": "canceling"}
 
     async def _robot(self, _: str, data: dict[str, Any]) -> dict[str, Any]:
-        event, given = self.robot[data["event"]], data.get("data", {})
-        faults = faults_of(event.shape, given)
+        event, values = self.robot[data["event"]], data.get("data", {})
+        faults = faults_of(event.shape, values)
         if faults:
             return refusal("schema", *faults)
-        trouble = await self._on_node(partial(event.cause, event.shape.converted(given)))
+        trouble = await self._on_node(partial(event.cause, event.shape.converted(values)))
         if trouble is not None:
             return {"verdict": "failed", "reason": "state", "because": [trouble]}
         return {"verdict": "happened"}

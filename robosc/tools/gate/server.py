@@ -80,24 +80,24 @@ def server(gate: Gate, client_of: Callable[[ServerRequestContext[Any, Any]], str
             return await call_next(ctx)
         except Exception as error:
             if ctx.method == "tools/call" and not isinstance(error, asyncio.CancelledError):
-                given = dict(ctx.params or {})
-                name = given.get("name")
+                parameters = dict(ctx.params or {})
+                name = parameters.get("name")
                 gate.note(
                     client_of(ctx),
                     name if isinstance(name, str) else "",
-                    given.get("arguments"),
+                    parameters.get("arguments"),
                     refusal("schema", f"no call of a tool: {type(error).__name__}"),
                 )
             raise
 
-    made: Server[Any] = Server(
+    mcp_server: Server[Any] = Server(
         "robosc gate", version=__version__, instructions=_INSTRUCTIONS, on_list_tools=list_tools, on_call_tool=call_tool
     )
-    made.middleware[:] = [log_malformed]  # without that which reports each call to OpenTelemetry
+    mcp_server.middleware[:] = [log_malformed]  # without that which reports each call to OpenTelemetry
     # The log of calls has what clients do wrong.
     logging.getLogger("mcp").addHandler(logging.NullHandler())
     logging.getLogger("mcp").propagate = False
-    return made
+    return mcp_server
 
 
 @contextmanager
@@ -145,10 +145,10 @@ async def _beside(gate: Gate, serve: Coroutine[Any, Any, None]) -> None:
 
 async def serve_stdio(gate: Gate) -> None:
     """Serve the client on standard input and output until it leaves."""
-    made = server(gate)
+    mcp_server = server(gate)
     messages: Any = _Messages(gate)
     async with stdio_server(anyio.wrap_file(messages)) as (received, sent):
-        await made.run(received, sent, made.create_initialization_options())
+        await mcp_server.run(received, sent, mcp_server.create_initialization_options())
     await gate.leave(STDIO)
 
 
@@ -187,8 +187,8 @@ async def serve_http(gate: Gate, listening: socket.socket, tokens: Sequence[str]
             await super().startup(sockets)
             ready()
 
-    made = server(gate, _client)
-    served = made.streamable_http_app(
+    mcp_server = server(gate, _client)
+    served = mcp_server.streamable_http_app(
         streamable_http_path=PATH, max_request_body_size=_most_bytes(gate), max_sessions=_MOST_SESSIONS
     )
     configuration = uvicorn.Config(
@@ -226,8 +226,8 @@ class _Guarded:
             await self._inner(scope, receive, send)
             return
         request = Request(scope)
-        given = request.headers.get("authorization", "").removeprefix("Bearer ").encode()
-        numbers = [number for number, token in enumerate(self._tokens, 1) if compare_digest(given, token.encode())]
+        token = request.headers.get("authorization", "").removeprefix("Bearer ").encode()
+        numbers = [number for number, known in enumerate(self._tokens, 1) if compare_digest(token, known.encode())]
         if not numbers:
             self._gate.note("unknown", "", None, refusal("writer", "a request without a token"))
             response = PlainTextResponse("the token is missing: use one that `robosc gate` printed", 401)

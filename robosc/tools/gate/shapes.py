@@ -7,6 +7,7 @@ import struct
 from abc import ABC, abstractmethod
 from copy import deepcopy
 from dataclasses import dataclass, field
+from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from robosc.base.ros_types import DefinitionError, Section
@@ -196,12 +197,8 @@ class Fields(Shape):
 
 def faults_of(shape: Fields, data: Any) -> list[str]:
     """Return the first faults of the data of a command."""
-    found: list[str] = []
-    for fault in shape.faults(data, ""):
-        if len(found) == _MOST_FAULTS:
-            return [*found, "further faults are left out"]
-        found.append(fault)
-    return found
+    faults = list(islice(shape.faults(data, ""), _MOST_FAULTS + 1))
+    return [*faults[:_MOST_FAULTS], *(["further faults are left out"] if len(faults) > _MOST_FAULTS else [])]
 
 
 def _kind(value: Any) -> str:
