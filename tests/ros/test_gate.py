@@ -1,9 +1,11 @@
-"""A client of MCP drives a small simulated robot over ROS 2 through `robosc gate`."""
+"""A client of MCP writes a guard with the tools of `robosc mcp`, and drives a simulated robot over ROS 2 through it."""
 
 from __future__ import annotations
 
 import asyncio
 import json
+import os
+import sys
 import time
 from contextlib import contextmanager
 from pathlib import Path
@@ -13,7 +15,7 @@ from mcp import Client, StdioServerParameters
 
 from tests.ros.processes import PATIENCE
 from tests.ros.workspaces import middleware
-from tests.tools.gate.bench import CONFIGURATION, PORTER, call
+from tests.tools.gate.bench import CONFIGURATION, call
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -21,6 +23,70 @@ if TYPE_CHECKING:
     from tests.ros.running import Runner
 
 HERE = Path(__file__).parent
+#: A guard with mistakes: no marked state, and an integer in place of a double.
+DRAFT = """robot Porter {
+  component Person {
+    outgoing message seen with identifier: "/person", type: boolean
+
+    behaviour {
+      initial state away {
+        on response from seen if value goto near
+      }
+
+      state near {
+        on response from seen if !value goto away
+      }
+    }
+  }
+
+  component Base {
+    constant fastest: double = 1
+
+    incoming message velocity with identifier: "/cmd_vel", type: geometry_msgs/Twist
+
+    limit velocity with { linear: { x: max(-fastest, min(value.linear.x, fastest)) } }
+  }
+
+  component Lamp {
+    service light with identifier: "/light", request: std_srvs/SetBool, response: std_srvs/SetBool
+  }
+
+  component Navigation {
+    action go_to with identifier: "/go_to", request: nav2_msgs/NavigateToPose, response: none, feedback: none
+  }
+
+  requirement slow: velocity needs Person.away or value.linear.x <= 0.5
+  requirement go_to needs Person.away
+}
+"""
+
+
+async def write_guard(folder: Path) -> Path:
+    """Write a guard: mend the draft by the findings of the tools, and verify it."""
+    path = folder / "porter.rscd"
+    arguments = ["-m", "robosc", "mcp", str(folder)]
+    async with Client(StdioServerParameters(command=sys.executable, args=arguments, env=dict(os.environ))) as client:
+
+        async def use(tool: str, **arguments: Any) -> dict[str, Any]:
+            result = await client.call_tool(tool, {"path": path.name, **arguments})
+            answer: dict[str, Any] = result.structured_content
+            return answer
+
+        checked = await use("check", text=DRAFT)
+        assert {finding["rule"] for finding in checked["findings"]} == {"marked-state", "type"}
+        fixed = await use("fix", text=DRAFT)
+        (finding, _) = fixed["findings"]
+        (edit,) = finding["alternatives"][0]["edits"]
+        lines = fixed["result"]["text"].splitlines(keepends=True)
+        line, column = edit["line"] - 1, edit["column"] - 1
+        lines[line] = lines[line][:column] + edit["text"] + lines[line][edit["end_column"] - 1 :]
+        path.write_text("".join(lines), encoding="utf-8")
+        assert await use("check") == {"exit_status": 0, "error": None, "findings": [], "result": {}}
+        explained = await use("explain", event="go_to", state="Person=near")
+        assert [note["text"] for note in explained["result"]["requirements"]] == ["requirement go_to needs Person.away"]
+        verified = await use("verify")
+        assert (verified["exit_status"], verified["error"]) == (0, None)
+    return path
 
 
 @contextmanager
@@ -56,37 +122,37 @@ def is_near(state: dict[str, Any]) -> bool:
 
 
 async def drive(client: Client) -> None:
-    """Drive to the person, past the requirements, and away again."""
-    goal = {"pose": {"pose": {"position": {"x": 0.0}}}}
+    """Drive to the person, against the requirements, and away again."""
+    home, there = ({"pose": {"pose": {"position": {"x": x}}}} for x in (0.0, 1.0))
     assert (await call(client, "Base_velocity", linear={"x": 0.75}))["verdict"] == "sent"
     state = await until(client, is_near)
     assert not state["commands"]["Navigation_go_to"]["allowed"]
-    refused = await call(client, "Base_velocity", linear={"x": 0.75})
-    assert (refused["verdict"], refused["reason"]) == ("refused", "requirement")
-    assert (await call(client, "Navigation_go_to", **goal))["reason"] == "requirement"
-    assert (await call(client, "Base_velocity", linear={"x": float(7)}))["reason"] == "requirement", "1.0, limited"
-    assert (await call(client, "Base_gear", data=9))["reason"] == "schema"
+    for data in ({"linear": {"x": 0.75}}, {"linear": {"x": 7.0}}):
+        refused = await call(client, "Base_velocity", **data)
+        assert (refused["verdict"], refused["reason"]) == ("refused", "requirement")
+        assert "Person.away or value.linear.x <= 0.5" in refused["possible"][0]
+    assert (await call(client, "Navigation_go_to", **home))["reason"] == "requirement"
+    assert (await call(client, "Base_velocity", linear={"x": "fast"}))["reason"] == "schema"
     assert (await call(client, "Base_velocity", linear={"x": -7.0}))["verdict"] == "limited"
     await until(client, lambda state: not is_near(state))
     assert (await call(client, "Lamp_light", data=True))["response"] == {"success": True, "message": ""}
-    assert (await call(client, "Navigation_go_to", **goal))["verdict"] == "accepted"
+    assert (await call(client, "Navigation_go_to", **home))["verdict"] == "accepted"
     ended = await call(client, "wait", command="Navigation_go_to", seconds=60.0)
     assert ended["status"] == "succeeded"
     assert 0 <= ended["feedback"]["distance_remaining"] < 0.2
-    # To the person: the requirement falls on the way, and the layer cancels the goal.
-    there = {"pose": {"pose": {"position": {"x": 1.0}}}}
+    # On the way to the person the requirement falls: the layer cancels the goal.
     assert (await call(client, "Navigation_go_to", **there))["verdict"] == "accepted"
     ended = await call(client, "wait", command="Navigation_go_to", seconds=60.0)
     assert ended["status"] == "canceled"
 
 
-def test_a_client_drives_a_robot_through_the_gate(run_ros2: Runner, tmp_path: Path) -> None:
+def test_a_client_writes_a_guard_and_drives_a_robot_through_it(run_ros2: Runner, tmp_path: Path) -> None:
     async def script(client: Client) -> None:
         async with client:
             await drive(client)
 
-    folder = tmp_path / "run"
-    with porter(run_ros2, folder, PORTER, "--config", str(CONFIGURATION)) as (client, received):
+    folder, guard = tmp_path / "run", asyncio.run(write_guard(tmp_path))
+    with porter(run_ros2, folder, guard, "--config", str(CONFIGURATION)) as (client, received):
         asyncio.run(script(client))
         end = time.monotonic() + PATIENCE
         while len(commands := read_lines(received)) < 8 and time.monotonic() < end:
