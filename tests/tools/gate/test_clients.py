@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import os
+import re
 import subprocess
 import sys
 from contextlib import asynccontextmanager, contextmanager
@@ -12,9 +13,11 @@ from typing import TYPE_CHECKING, Any
 
 import httpx2
 import pytest
+from click.testing import CliRunner
 from mcp import Client, StdioServerParameters
 from mcp.client.streamable_http import streamable_http_client
 
+from robosc.tools.cli import main
 from tests.tools.gate.bench import CONFIGURATION, PORTER, call
 
 if TYPE_CHECKING:
@@ -178,22 +181,45 @@ def test_http_needs_a_token_and_this_host(tmp_path: Path) -> None:
     assert [(entry["client"], entry["verdict"]) for entry in calls(tmp_path)] == [("unknown", "refused")] * 3
 
 
+def refused(*words: str) -> str:
+    """Return the errors of a call that cannot be executed."""
+    done = subprocess.run(words, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "Traceback" not in done.stderr
+    return " ".join(done.stderr.split())
+
+
+def test_all_faults_of_a_script_are_reported(tmp_path: Path) -> None:
+    script = tmp_path / "script.jsonl"
+    script.write_text(
+        '{"event": "Person"}\n\n{"event": "Person.seen", "data": {"data": 1}}\n{"after": -1}\n{\n', encoding="utf-8"
+    )
+    errors = refused(*command(tmp_path, "--script", str(script)))
+    for fault in (
+        "1: event is not one of: Person.seen,",
+        "3: data is a number, expected true or false",
+        "4: after is not between 0 and 86400",
+        "4: event is missing",
+        "5: ",
+    ):
+        assert f"script.jsonl:{fault}" in errors
+
+
+def test_a_log_that_cannot_be_written_is_named(tmp_path: Path) -> None:
+    errors = refused(*command(tmp_path, "--log", str(tmp_path / "nowhere" / "calls.jsonl")))
+    assert re.search(r"the log of calls \S+/nowhere/calls\.jsonl cannot be written: No such file or directory", errors)
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (["--script", "SCRIPT"], "script.jsonl:1: event is not one of"),
-        (["--script", "SCRIPT"], "script.jsonl:2: data is a number, expected true or false"),
-        (["--http", "70000"], "70000 is not in the range"),
-        (["--ros-args"], "--dry takes no ROS arguments"),
-        (["--log", "/nowhere/calls.jsonl"], "the log of calls /nowhere/calls.jsonl cannot be written"),
+        (["--dry", "--http", "70000"], "70000 is not in the range"),
+        (["--dry", "--ros-args"], "--dry takes no ROS arguments: --ros-args"),
+        (["--script", str(PORTER)], "--script needs --dry"),
+        (["--dry", "--rate", "0"], "0.0 is not in the range"),
     ],
 )
-def test_wrong_calls(tmp_path: Path, options: list[str], message: str) -> None:
-    script = tmp_path / "script.jsonl"
-    script.write_text('{"event": "Person"}\n{"event": "Person.seen", "data": {"data": 1}}\n', encoding="utf-8")
-    words = [str(script) if option == "SCRIPT" else option for option in options]
-    done = subprocess.run(
-        command(tmp_path, *words), stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False
-    )
-    assert (done.returncode, done.stdout) == (2, "")
-    assert message in " ".join(done.stderr.split())
+def test_wrong_calls(options: list[str], message: str) -> None:
+    result = CliRunner().invoke(main, ["gate", str(PORTER), *options])
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert message in " ".join(result.stderr.split())
