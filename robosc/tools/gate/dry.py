@@ -215,6 +215,9 @@ class DryNode(RunningNode):
     def serving_nodes(self, element: Client | Server) -> Sequence[tuple[str, str]]:  # noqa: ARG002  # no ROS graph
         return ()
 
+    def calling_nodes(self, client: Client) -> Sequence[str]:  # noqa: ARG002  # no ROS graph
+        return ()
+
     def endpoints(self) -> Mapping[rosgraph.Subscription | rosgraph.Publisher, list[Endpoint]]:
         return {}
 

@@ -38,6 +38,8 @@ HOSTILE: list[tuple[str, Any, str]] = [
     ("Base_gear", {"data": -1}, "schema"),
     ("Base_gear", {"data": 2.5}, "schema"),
     ("Base_gear", {"data": 10**30}, "schema"),
+    ("Base_gear", {"data": float("nan")}, "schema"),
+    ("Base_gear", {"data": float("-inf")}, "schema"),
     ("Base_text", {"data": "a\0b"}, "schema"),
     ("Base_text", {"data": "\ud800"}, "schema"),
     ("Base_text", {"data": "x" * 70_000}, "size"),
