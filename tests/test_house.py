@@ -188,6 +188,8 @@ OPENERS = {
     "model._ecore",
     "tools.cli.view",  # the browser
     "tools.view.page",
+    "tools.mcp.pages",
+    "tools.mcp.process",  # the null device, in place of the pipe to the server
     "run.node_tests.trace_test",
     "run.runtime.ros2.interfaces",  # a tool of its own, whose files are made for the generators
     "run.runtime.core.event_log",  # what `files.writing` has opened

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
 #: Maximum size of a file. A model of 100,000 lines has 4 MB, a saved one with the deepest expression 72 MB.
 MOST_BYTES = 128 << 20
@@ -48,7 +48,7 @@ def open_file(path: str | os.PathLike[str], *, is_input: bool = True, buffering:
     """Open a regular file of any size for binary reading; `is_input` is as for `read`. Raises OSError."""
     name = os.fspath(path)
     try:
-        _require_readable(name)
+        _require_readable(name, os.path.realpath)
         _require_regular(Path(name).stat(), name)
         # Between the two calls, the file may be replaced by another kind, which must not block either.
         descriptor = os.open(name, os.O_RDONLY | _CAUTIOUS)
@@ -57,6 +57,7 @@ def open_file(path: str | os.PathLike[str], *, is_input: bool = True, buffering:
     with os.fdopen(descriptor, "rb", buffering=buffering) as file:
         status = os.fstat(descriptor)
         _require_regular(status, name)
+        _require_readable(name, lambda _: _opened_path(descriptor))
         noted = _noted.get()
         if is_input and noted is not None:
             noted[_identity(status)] = name
@@ -107,14 +108,24 @@ def read_only_below(folders: Sequence[Path], trusted: Sequence[Path]) -> Iterato
         _readable.reset(token)
 
 
-def _require_readable(name: str) -> None:
+def _opened_path(descriptor: int) -> str | None:
+    """Return the path of an opened file without links, or None if the system does not report it."""
+    try:
+        return str(Path(f"/proc/self/fd/{descriptor}").readlink())
+    except OSError:
+        return None
+
+
+def _require_readable(name: str, without_links: Callable[[str], str | None]) -> None:
+    """Raise PermissionError if `read_only_below` excludes a file. `without_links` returns its real path, if known."""
     readable = _readable.get()
-    if readable is None:
+    real = None if readable is None else without_links(name)
+    if readable is None or real is None:
         return
     folders, trusted = readable
-    path, real = Path(name).absolute(), Path(os.path.realpath(name))
+    path = Path(name).absolute()
     is_trusted = ".." not in path.parts and any(path.is_relative_to(folder) for folder in trusted)
-    if not is_trusted and not any(real.is_relative_to(folder) for folder in folders):
+    if not is_trusted and not any(Path(real).is_relative_to(folder) for folder in folders):
         raise PermissionError(errno.EACCES, "this is outside of the folders that may be read", name)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
@@ -43,4 +44,5 @@ def command(folders: Sequence[str], seconds: float, megabytes: int, paths: Paths
         if missing == "robosc":
             raise
         raise CallError(f"{missing} is not installed: run pip install 'robosc[mcp]'") from error
-    serve(create(Settings(folders, paths.libraries, paths.interfaces, megabytes << 20), seconds))
+    roots = [str(Path(folder).resolve()) for folder in folders]
+    serve(create(Settings(roots, paths.libraries, paths.interfaces, megabytes << 20), seconds))

@@ -1,7 +1,7 @@
-"""Process that runs calls for the server: `python -m robosc.tools.mcp.process`.
+"""Process that runs calls for the server: `python -m robosc.tools.mcp.process PARENT`.
 
-The first line of input has the settings, and each further line a call. The first line of output is empty, and each
-further line is an answer.
+PARENT is the number of the server's process, with which this one ends. The first line of input has the settings, and
+each further line a call. The first line of output is empty, and each further line is an answer.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from robosc.tools.workers import end_with_parent
 
 def main() -> None:
     """Answer calls until the input ends."""
-    end_with_parent(os.getppid())
+    end_with_parent(int(sys.argv[1]))
     wire = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # prints must not reach the server
     requests = os.fdopen(os.dup(0), "rb")
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     sys.set_int_max_str_digits(0)  # the number of states of a robot may have many digits
     language()
-    # The grammar is permanent; the models of earlier calls are collected.
+    # The grammar is permanent. The model of a call is collected after the answer.
     gc.freeze()
     gc.set_threshold(50_000, 10, 10)
     calls = Calls(**json.loads(requests.readline()))
@@ -37,6 +37,7 @@ def main() -> None:
         request = json.loads(line)
         wire.write(_line(calls.answer(request["tool"], request["arguments"])))
         wire.flush()
+        gc.collect()
 
 
 def _line(answer: dict[str, Any]) -> bytes:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import os
 import sys
 from contextlib import asynccontextmanager
 from dataclasses import asdict, dataclass
@@ -15,9 +16,11 @@ from mcp_types import (
     INVALID_PARAMS,
     CallToolResult,
     ListResourcesResult,
+    ListResourceTemplatesResult,
     ListToolsResult,
     ReadResourceResult,
     Resource,
+    ResourceTemplate,
     TextContent,
     TextResourceContents,
     ToolAnnotations,
@@ -27,7 +30,7 @@ from mcp_types import Tool as ToolType
 from robosc import __version__
 from robosc.tools.mcp.arguments import faults
 from robosc.tools.mcp.catalog import TOOLS
-from robosc.tools.mcp.pages import pages, resource
+from robosc.tools.mcp.pages import RULE_TEMPLATE, pages, resource
 from robosc.tools.mcp.stdio import error_result, unknown_tool
 from robosc.tools.mcp.worker import CallFailedError, Worker
 
@@ -37,8 +40,8 @@ if TYPE_CHECKING:
     from mcp.server.context import ServerRequestContext
     from mcp_types import CallToolRequestParams, PaginatedRequestParams, ReadResourceRequestParams
 
-#: The command that runs calls.
-COMMAND = (sys.executable, "-P", "-m", "robosc.tools.mcp.process")
+#: The command that runs calls; the number of this process follows it. `-P` imports nothing from the user's folders.
+_COMMAND = (sys.executable, "-P", "-m", "robosc.tools.mcp.process")
 #: Maximum number of calls that wait at the same time.
 MOST_WAITING = 100
 #: Exit statuses of calls that were not executed: a wrong call, an internal error.
@@ -69,7 +72,8 @@ class _Calls:
     """Calls of tools: quick ones and long ones have a process each, so that a long one delays no quick one."""
 
     def __init__(self, settings: Settings, seconds: float) -> None:
-        self._workers = {is_long: Worker(COMMAND, asdict(settings), seconds) for is_long in (False, True)}
+        command = (*_COMMAND, str(os.getpid()))
+        self._workers = {is_long: Worker(command, asdict(settings), seconds) for is_long in (False, True)}
         self._waiting = 0
 
     async def answer(self, name: str, arguments: dict[str, Any]) -> CallToolResult:
@@ -154,6 +158,14 @@ def create(settings: Settings, seconds: float) -> Server[Any]:
             ]
         )
 
+    async def list_templates(
+        _context: ServerRequestContext[Any], _params: PaginatedRequestParams | None
+    ) -> ListResourceTemplatesResult:
+        rule = ResourceTemplate(
+            uri_template=RULE_TEMPLATE, name="rule", title="Page of a rule", mime_type="text/markdown"
+        )
+        return ListResourceTemplatesResult(resource_templates=[rule])
+
     async def read_resource(
         _context: ServerRequestContext[Any], params: ReadResourceRequestParams
     ) -> ReadResourceResult:
@@ -172,5 +184,6 @@ def create(settings: Settings, seconds: float) -> Server[Any]:
         on_list_tools=list_tools,
         on_call_tool=call_tool,
         on_list_resources=list_resources,
+        on_list_resource_templates=list_templates,
         on_read_resource=read_resource,
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
 from random import Random
@@ -17,7 +17,6 @@ from robosc.analysis.verify.verdict import as_json
 from robosc.base.diagnostics.rules import page, rules
 from robosc.base.files.suffixes import MODELS
 from robosc.base.files.writing import write_file
-from robosc.language.configuration import Configuration
 from robosc.language.text import Documents
 from robosc.run.simulation import Simulation
 from robosc.run.simulation.session import trace_line
@@ -47,10 +46,10 @@ if TYPE_CHECKING:
 
     Arguments = Mapping[str, Any]
 
-#: Path of a text without a file, in the first folder.
-_UNNAMED = "model.rscd"
-_SCENARIOS = "test.scenarios"
-_SCRIPT = "<script>"
+#: Paths of texts without a file. Their folder does not exist, so that it has no configuration.
+_MODEL = "<text>/model.rscd"
+_SCENARIOS = "<text>/test.scenarios"
+_SCRIPT = "<text>/script"
 
 
 @dataclass(frozen=True)
@@ -60,8 +59,6 @@ class _Source:
     path: str
     paths: Paths
     documents: Documents
-    is_file: bool
-    arguments: Arguments = field(default_factory=dict)
 
     def models(self, report: Report, *, cif: bool = True) -> Models:
         """Return the models of the robot. Ends the report if there are errors."""
@@ -74,7 +71,7 @@ class Calls:
     def __init__(
         self, folders: Sequence[str], libraries: Sequence[str], interfaces: Sequence[str], memory: int
     ) -> None:
-        """Take the folders of files, libraries and ROS types, and the memory of a call in bytes."""
+        """Take the fields of `robosc.tools.mcp.server.Settings`."""
         self._folders = Folders(folders)
         self._libraries = [str(Path(folder).resolve()) for folder in libraries]
         self._interfaces = [str(Path(folder).resolve()) for folder in interfaces]
@@ -104,14 +101,15 @@ class Calls:
         path, text = arguments.get("path"), arguments.get("text")
         if path is None and text is None:
             raise CallError("name a file with `path`, or give the model itself with `text`")
-        if text is None:
+        if path is not None and text is None:
             self._folders.file(path, MODELS)
         else:
-            self._folders.inside(path or _UNNAMED, (".rscd",))
-        libraries = [*self._named_folders(arguments, "library_paths"), *self._libraries]
+            self._folders.inside(path or _MODEL, (".rscd",))
+        beside = [] if path else [str(self._folders.roots[0])]
+        libraries = [*beside, *self._named_folders(arguments, "library_paths"), *self._libraries]
         interfaces = [*self._named_folders(arguments, "interface_paths"), *self._interfaces]
-        texts = {} if text is None else {path or _UNNAMED: text}
-        return _Source(path or _UNNAMED, Paths(libraries, interfaces), Documents(texts), path is not None, arguments)
+        texts = {_SCENARIOS: arguments.get("scenarios_text", "")} | ({} if text is None else {path or _MODEL: text})
+        return _Source(path or _MODEL, Paths(libraries, interfaces), Documents(texts))
 
     def _named_folders(self, arguments: Arguments, name: str) -> list[str]:
         folders = [self._folders.inside(folder) for folder in arguments.get(name, ())]
@@ -120,13 +118,9 @@ class Calls:
             raise CallError(f"`{name}`: there is no folder {missing}")
         return folders
 
-    def _configuration(self, source: _Source, report: Report) -> Configuration:
-        chosen = source.arguments.get("config")
-        if chosen is None and not source.is_file:
-            return Configuration()
-        if chosen is not None:
-            self._folders.file(chosen, (".json",))
-        return read_configuration(source.path, chosen, report)
+    def _config(self, arguments: Arguments) -> str | None:
+        chosen: str | None = arguments.get("config")
+        return chosen if chosen is None else self._folders.file(chosen, (".json",))
 
     # Tools: each returns the exit status without errors, and its result
 
@@ -174,7 +168,7 @@ class Calls:
     def _verify(self, arguments: Arguments, report: Report) -> tuple[int, dict[str, Any]]:
         source = self._source(arguments)
         models = source.models(report)
-        settings = self._configuration(source, report)
+        settings = read_configuration(source.path, self._config(arguments), report)
         supervise_models(models, report, memory=self._memory)
         verdicts = verify(models, settings)
         report.add(finding for verdict in verdicts for finding in verdict.findings)
@@ -192,7 +186,8 @@ class Calls:
         values = arguments.get("parameters", {}).items()
         texts = [f"{name}={value if isinstance(value, str) else json.dumps(value)}" for name, value in values]
         set_parameters(models.rosgraph, texts)
-        settings = loop_settings(self._configuration(source, report)) if is_loop else None
+        chosen = self._config(arguments)
+        settings = loop_settings(read_configuration(source.path, chosen, report)) if is_loop else None
         supervise_models(models, report, memory=self._memory)
         if script is not None:
             return 0, {"lines": list(play(models, _SCRIPT, script.encode(), settings, report))}
@@ -207,17 +202,12 @@ class Calls:
         if not source.path.endswith(".rscd"):
             raise CallError(f"{source.path} is not a text file: scenarios need a robot in a .rscd file")
         scenarios = [self._folders.file(name, (".scenarios",)) for name in arguments.get("scenarios", ())]
-        texts = {} if "text" not in arguments else {source.path: arguments["text"]}
-        if "scenarios_text" in arguments:
-            scenarios.append(_SCENARIOS)
-            texts[_SCENARIOS] = arguments["scenarios_text"]
+        scenarios += [_SCENARIOS] if "scenarios_text" in arguments else []
         if not scenarios:
             raise CallError("name files with `scenarios`, or give the scenarios themselves with `scenarios_text`")
-        chosen = arguments.get("config")
-        if chosen is not None:
-            self._folders.file(chosen, (".json",))
+        chosen = self._config(arguments)
         runs: list[Run] = []
-        call = Call(source.path, scenarios, chosen=chosen, paths=source.paths, documents=Documents(texts))
+        call = Call(source.path, scenarios, chosen=chosen, paths=source.paths, documents=source.documents)
         play_all(call, report, runs)
         return 0, {"scenarios": as_objects(runs)}
 

@@ -70,3 +70,36 @@ def test_inputs_are_noted(tmp_path: Path) -> None:
         assert files.input_name((tmp_path / "again").stat()) == str(tmp_path / "input")
         assert files.input_name((tmp_path / "other").stat()) is None
     assert files.input_name((tmp_path / "input").stat()) is None
+
+
+def test_only_files_below_folders_are_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("own", "installed", "other"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "file").write_text(name)
+    for name in ("own", "installed"):
+        (tmp_path / name / "out").symlink_to(tmp_path / "other" / "file")
+    (tmp_path / "own" / "around").symlink_to(tmp_path / "own" / "file")
+    monkeypatch.chdir(tmp_path)
+    with files.read_only_below([Path("own")], [Path("installed")]):
+        for name in ("own/file", "own/around", "other/../own/file", "installed/file", "installed/out"):
+            assert files.read(name)
+        for name in ("other/file", "own/out", "own/../other/file", "installed/../other/file", "/etc/passwd"):
+            with pytest.raises(PermissionError, match="outside of the folders that may be read"):
+                files.read(name)
+    assert files.read("other/file") == b"other"
+
+
+def test_a_file_that_becomes_a_link_meanwhile_is_not_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "own").mkdir()
+    (tmp_path / "own" / "file").touch()
+    (tmp_path / "other").write_text("other")
+    opened = os.open
+
+    def swapped(path: str, flags: int) -> int:
+        Path(path).unlink()
+        Path(path).symlink_to(tmp_path / "other")
+        return opened(path, flags)
+
+    monkeypatch.setattr(os, "open", swapped)
+    with files.read_only_below([tmp_path / "own"], []), pytest.raises(PermissionError):
+        files.read(tmp_path / "own" / "file")

@@ -6,6 +6,9 @@ import asyncio
 import json
 import os
 import subprocess
+import sys
+import time
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -15,7 +18,8 @@ from tests.tools.mcp.assistant import LONG, LONGEST, ROOT, Assistant, assistant,
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from pathlib import Path
+
+pytestmark = pytest.mark.xdist_group("mcp")
 
 DOOR = """\
 robot Door {
@@ -187,7 +191,7 @@ def test_texts_that_are_no_models(robosc: Assistant, text: str) -> None:
 
 def test_a_long_synthesis_ends(desk: Path) -> None:
     """It delays no quick call."""
-    with assistant(desk, "--seconds", "3") as client:
+    with assistant(desk, "--seconds", "2") as client:
 
         async def calls() -> tuple[Any, Any]:
             long = asyncio.create_task(client.client.call_tool("synthesize", {"text": LONG}))
@@ -197,7 +201,7 @@ def test_a_long_synthesis_ends(desk: Path) -> None:
 
         long, quick = client.wait(calls())
     assert not quick.is_error
-    assert "took more than 3 seconds" in long.content[0].text
+    assert "took more than 2 seconds" in long.content[0].text
 
 
 def test_a_canceled_call_ends(robosc: Assistant) -> None:
@@ -224,48 +228,83 @@ def test_a_thousand_calls_at_once(robosc: Assistant) -> None:
     assert robosc.answer("check", path="door.rscd")["exit_status"] == 0
 
 
+class Raw:
+    """A server to which a test writes lines itself."""
+
+    def __init__(self, desk: Path) -> None:
+        pipe = subprocess.PIPE
+        environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+        self.process = subprocess.Popen(command(desk), stdin=pipe, stdout=pipe, stderr=pipe, env=environment)
+        begin = {"protocolVersion": "2025-06-18", "capabilities": {}, "clientInfo": {"name": "raw", "version": "0"}}
+        self.write({"jsonrpc": "2.0", "id": 1, "method": "initialize", "params": begin})
+        self.write({"jsonrpc": "2.0", "method": "notifications/initialized"})
+
+    def write(self, line: dict[str, Any] | bytes) -> None:
+        assert self.process.stdin is not None
+        self.process.stdin.write((line if isinstance(line, bytes) else json.dumps(line).encode()) + b"\n")
+        self.process.stdin.flush()
+
+    def call(self, number: int, tool: str, arguments: Any) -> None:
+        params = {"name": tool, "arguments": arguments}
+        self.write({"jsonrpc": "2.0", "id": number, "method": "tools/call", "params": params})
+
+    def answers(self, last: int) -> dict[Any, Any]:
+        """Return all answers until the one to the call with this number."""
+        assert self.process.stdout is not None
+        answers: dict[Any, Any] = {}
+        while last not in answers:
+            answer = json.loads(self.process.stdout.readline())
+            answers[answer.get("id")] = answer
+        return answers
+
+
 def test_lines_that_are_no_messages(desk: Path) -> None:
     """The server drops them and answers the next message."""
-    first = {
-        "jsonrpc": "2.0",
-        "id": 1,
-        "method": "initialize",
-        "params": {"protocolVersion": "2025-06-18", "capabilities": {}, "clientInfo": {"name": "raw", "version": "0"}},
-    }
-    begin = {"jsonrpc": "2.0", "method": "notifications/initialized"}
-    call = {"jsonrpc": "2.0", "id": 2, "method": "tools/call", "params": {"name": "check", "arguments": {"path": 1}}}
-    wrong = [
+    raw = Raw(desk)
+    for line in (
         b"",
-        b"\xff\xfe\n",
+        b"\xff\xfe",
         b"null",
         b"[]",
         b"{}",
         b"[" * 100_000,
         b'{"jsonrpc": "2.0", "id": 3, "method": "tools/call", "params": {"name": NaN}}',
-        b'{"jsonrpc": "2.0", "id": 4, "method": "tools/call", "params": {"name": "check", "arguments": []}}',
         b'{"jsonrpc": "2.0", "id": 5, "method": "\xff"}',
         b'{"jsonrpc": "2.0", "id": 6, "method": "tools/call", "params": {"name": "\\ud800"}}',
-    ]
-    process = subprocess.Popen(
-        command(desk),
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-    )
-    with process:
-        assert process.stdin is not None
-        assert process.stdout is not None
-        assert process.stderr is not None
-        lines = [json.dumps(first).encode(), json.dumps(begin).encode(), *wrong, json.dumps(call).encode()]
-        process.stdin.write(b"\n".join(lines) + b"\n")
-        process.stdin.flush()
-        answers: dict[Any, Any] = {}
-        while 2 not in answers:
-            answer = json.loads(process.stdout.readline())
-            answers[answer.get("id")] = answer
-        process.stdin.close()
-        assert b"Traceback" not in process.stderr.read()
-        assert process.wait(LONGEST) == 0
+    ):
+        raw.write(line)
+    raw.call(7, "check", [])
+    raw.call(2, "check", {"path": 1})
+    answers = raw.answers(2)
+    _, errors = raw.process.communicate(timeout=LONGEST)
+    assert raw.process.returncode == 0
     assert answers[2]["result"]["content"][0]["text"] == "`path` must be a string, not 1"
-    assert "Traceback" not in json.dumps(answers)
+    assert "error" in answers[7]
+    assert "Traceback" not in json.dumps(answers) + errors.decode()
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux ends a process with its parent")
+def test_the_processes_of_calls_end_with_the_server(desk: Path) -> None:
+    """Also one that is busy, after SIGKILL."""
+    raw = Raw(desk)
+    raw.call(2, "synthesize", {"text": DOOR})
+    raw.answers(2)
+    raw.call(3, "synthesize", {"text": LONG})
+    time.sleep(0.5)  # it reads the model
+    server = raw.process.pid
+    children = Path(f"/proc/{server}/task/{server}/children").read_text().split()
+    raw.process.kill()
+    raw.process.communicate(timeout=LONGEST)
+    assert len(children) == 2
+    until = time.monotonic() + LONGEST
+    while any(runs(child) for child in children) and time.monotonic() < until:
+        time.sleep(0.05)
+    assert [child for child in children if runs(child)] == []
+
+
+def runs(process: str) -> bool:
+    """Whether a process exists and has not ended."""
+    try:
+        return Path(f"/proc/{process}/stat").read_text().rpartition(") ")[2][0] != "Z"
+    except OSError:
+        return False

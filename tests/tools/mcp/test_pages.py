@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import re
+from io import BytesIO
 from pathlib import Path
 
 import pytest
 
 from robosc.base.diagnostics.rules import rules
-from robosc.tools.mcp import pages
+from robosc.tools.mcp import catalog, pages, stdio, worker
+from robosc.tools.mcp.catalog import TOOLS
 from robosc.tools.mcp.search import MOST_CHARACTERS, excerpt, search
+from robosc.tools.mcp.server import MOST_WAITING
 
 ROOT = Path(__file__).parents[3]
 DOCS = ROOT / "docs"
@@ -38,6 +41,20 @@ def test_the_overview_lists_each_page_once() -> None:
     there = {path.relative_to(DOCS).as_posix() for pattern in ("*.md", "howto/*.md") for path in DOCS.glob(pattern)}
     assert sorted(links) == sorted(there)
     assert [link for link in re.findall(r"\]\(([^)]+)\)", OVERVIEW) if not (DOCS / link).is_file()] == []
+
+
+def test_the_page_for_people_names_tools_and_limits() -> None:
+    page = (DOCS / "mcp.md").read_text(encoding="utf-8")
+    _, _, table = page.partition("| tool | result |\n")
+    assert re.findall(r"^\| `(\w+)` \|", table, re.MULTILINE) == list(TOOLS)
+    limits = f"{catalog.MOST_CHARACTERS:,} characters, an answer {worker.MOST_BYTES >> 20} MB, and {MOST_WAITING} calls"
+    assert limits in page
+
+
+def test_a_message_that_is_too_long_is_dropped(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(stdio, "MOST_BYTES", 9)
+    lines = stdio.Lines(BytesIO(b"12345678\n" + b"1" * 99 + b"\n\xff\n1234567890"))
+    assert [lines.readline() for _ in range(3)] == ["12345678\n", "\N{REPLACEMENT CHARACTER}\n", ""]
 
 
 def test_all_pages_and_examples_are_resources() -> None:

@@ -10,6 +10,8 @@ from robosc.tools.cli import main
 from robosc.tools.mcp.catalog import TOOLS
 from tests.tools.mcp.assistant import ROOT, Assistant, assistant
 
+pytestmark = pytest.mark.xdist_group("mcp")
+
 FOLLOWER = ROOT / "examples" / "line_follower" / "line_follower.rscd"
 SCENARIOS = """\
 scenario "drives only while the way is clear"
@@ -104,7 +106,9 @@ def test_an_assistant_writes_a_robot_from_nothing(robosc: Assistant, desk: Path)
     assert [line["accepted"] for line in lines] == [False, True]
     played = robosc.answer("test", path="porter/porter.rscd", scenarios_text=SCENARIOS)
     assert [scenario["passed"] for scenario in played["result"]["scenarios"]] == [True, False]
-    assert [(finding["file"], finding["rule"]) for finding in played["findings"]] == [("test.scenarios", "scenario")]
+    assert [(finding["file"], finding["rule"]) for finding in played["findings"]] == [
+        ("<text>/test.scenarios", "scenario")
+    ]
 
 
 def test_results_are_those_of_the_commands(
@@ -135,6 +139,36 @@ def test_a_text_needs_no_file(robosc: Assistant, desk: Path) -> None:
     mended = robosc.answer("fix", text=text.replace("x: 0.0", "x: 0"))
     assert mended["result"] == {"edits": 1, "text": text}
     assert sorted(desk.rglob("*")) == before
+
+
+def test_the_documentation_is_read(robosc: Assistant) -> None:
+    resources = robosc.wait(robosc.client.list_resources()).resources
+    uris = {resource.uri for resource in resources}
+    assert {"robosc://docs/llms.txt", "robosc://docs/language.md"} <= uris
+    example = f"robosc://examples/line_follower/{FOLLOWER.name}"
+    (templates,) = robosc.wait(robosc.client.list_resource_templates()).resource_templates
+    for uri in (example, "robosc://docs/language.md", templates.uri_template.replace("{rule}", "marked-state")):
+        (content,) = robosc.wait(robosc.client.read_resource(uri)).contents
+        assert content.text == (ROOT / uri.removeprefix("robosc://")).read_text()
+    (result,) = robosc.answer("search_docs", query="marked state", most=1)["results"]
+    assert result["uri"] == "robosc://docs/rules/marked-state.md"
+    assert robosc.answer("rule", name="marked-state")["page"] == (ROOT / "docs/rules/marked-state.md").read_text()
+
+
+def test_a_text_has_no_configuration_but_libraries(robosc: Assistant, desk: Path) -> None:
+    """Two configurations below the first folder would be an error for a file in it."""
+    for name in ("one", "two"):
+        (desk / name).mkdir()
+        (desk / name / "controller-config.json").write_text("{}")
+    (desk / "parts.rscd").write_text(
+        'library Parts {\n  component Bell { incoming message ring with identifier: "/ring", type: none }\n}\n'
+    )
+    text = "robot Tower {\n  component Own from Parts import Bell\n}\n"
+    assert robosc.answer("verify", text=text)["exit_status"] == 0
+    played = robosc.answer("test", text=text, scenarios_text='scenario "rings"\n  expect ring sent\n')
+    assert played["result"]["scenarios"][0]["passed"]
+    (finding,) = robosc.answer("verify", path=FOLLOWER.name)["findings"]
+    assert finding["rule"] == "configuration"
 
 
 def test_a_robot_without_a_supervisor(robosc: Assistant) -> None:

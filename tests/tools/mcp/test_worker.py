@@ -13,6 +13,8 @@ from mcp import Client
 from robosc.tools.mcp import server, worker
 from robosc.tools.mcp.worker import CallFailedError, Worker
 
+pytestmark = pytest.mark.xdist_group("mcp")
+
 EXAMPLES = sorted((Path(__file__).parents[3] / "examples").glob("*/*.rscd"))
 #: A process that echoes calls, dies of `die`, never answers `sleep`, and does not start with the setting `bad`.
 PROGRAM = """
