@@ -151,6 +151,8 @@ def test_a_goal_runs_to_its_end(bench: Bench, outcome: GoalOutcome) -> None:
     handlers = bench.port.goals[0].handlers
     # Feedback may arrive before the acceptance.
     handlers.feedback(Record(distance_remaining=0.5))
+    bench.wait()
+    assert (last(bench), bench.status) == (("accepted", ""), "executing")
     handlers.accepted()
     bench.wait()
     assert (last(bench), bench.status) == (("accepted", ""), "executing")

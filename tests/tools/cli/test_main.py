@@ -35,6 +35,7 @@ COMMANDS = [
     "interfaces",
     "lsp",
     "dap",
+    "mcp",
 ]
 
 

@@ -256,13 +256,14 @@ def test_a_silent_writer_stops_and_loses_its_role(tmp_path: Path) -> None:
         await call(client, "Base_velocity", linear={"x": 0.75})
         await call(client, "Navigation_go_to")
         assert (await bench.gate.call("other", "Base_horn", {}))["reason"] == "writer"
-        now[0] = 50
-        await bench.gate.expire()
-        await call(client, "robot", event="Navigation.go_to.succeeded")
         now[0] = 100
+        await bench.gate.expire()  # its goal runs
+        assert (await call(client, "state"))["goals"]["Navigation_go_to"]["status"] == "executing"
+        await call(client, "robot", event="Navigation.go_to.succeeded")
+        now[0] = 159
         await bench.gate.expire()
         assert (await bench.gate.call("other", "Base_horn", {}))["reason"] == "writer"
-        now[0] = 111
+        now[0] = 161
         await bench.gate.expire()
         assert bench.received()[-1] == ("Base.velocity", bench.received()[-1][1])
         assert bench.received()[-1][1]["linear"]["x"] == 0.0
