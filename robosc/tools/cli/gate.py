@@ -156,7 +156,8 @@ def command(
         def serve(node: RunningNode, layer: GatedLayer) -> AbstractContextManager[None]:
             if isinstance(node, DryNode):
                 play(node, steps)
-            gate = Gate(models.sct, known, node, layer, _log(log, node, settings.layer_name(graph)), limits, events)
+            calls = _log(log, node, settings.layer_name(graph))
+            gate = Gate(models.sct, known, node, layer, calls, limits, settings.frame_id, events)
             return serving(serve_stdio(gate) if listening is None else serve_http(gate, listening, tokens, ready), gate)
 
         run_gate(graph, settings, arguments, safe, serve, node)
@@ -173,7 +174,9 @@ def _read(model: str, chosen: str | None, parameter_texts: Sequence[str], paths:
         set_parameters(models.rosgraph, parameter_texts)
         settings = read_configuration(model, chosen, report)
         supervise_models(models, report)
-        report.add(TARGETS["ros2-layer"].findings(models, settings))
+        findings = TARGETS["ros2-layer"].findings(models, settings)
+        # A gate sets the frames of headers, a layer between two nodes does not.
+        report.add(finding for finding in findings if not finding.message.startswith('"frameId" has no effect'))
         report.stop_on_errors()
     return models, settings
 

@@ -48,6 +48,15 @@ class Command:
     element: Element
     section: Section
 
+    @property
+    def ros_name(self) -> str:
+        """Name of its topic, service or action."""
+        return _ros_name(self.element)
+
+
+def _ros_name(element: Element) -> str:
+    return str(element.topic if isinstance(element, rosgraph.Publisher) else element.identifier)
+
 
 def commands(models: Models) -> list[Command]:
     """Return the commands of a robot whose model has a supervisor, in the order of the text.
@@ -119,12 +128,11 @@ def _description(  # noqa: PLR0913, PLR0917 - the parts of a description
     port: PortInstance | None,
     reasons: Mapping[str, Iterable[str]],
 ) -> Iterator[str]:
-    topic = element.topic if isinstance(element, rosgraph.Publisher) else element.identifier
     yield _KINDS[section].format(name)
     note = None if port is None else comment(port.communication)
     if note:
         yield note if note.endswith((".", "!", "?")) else f"{note}."
-    yield f"ROS name: `{topic}`, type {element.interface.package}/{element.interface.type}."
+    yield f"ROS name: `{_ros_name(element)}`, type {element.interface.package}/{element.interface.type}."
     texts = list(dict.fromkeys(reasons.get(event_name(sending.event), ())))
     if texts:
         yield f"Requirements: {'; '.join(f'`{text}`' for text in texts)}."

@@ -281,9 +281,7 @@ def robot_events(node: DryNode, graph: rosgraph.RosGraph, types: RosTypes) -> di
         name: str, interface: rosgraph.Interface, section: Section, effect: Callable[[Message], str | None]
     ) -> None:
         def cause(data: Mapping[str, Any]) -> str | None:
-            message = node.create(interface, section)
-            messages.fill(message, interface, section, data)
-            return effect(message)
+            return effect(messages.create(interface, section, data))
 
         try:
             known[name] = RobotEvent(name, shapes.of(interface.package, interface.type, section, None, ""), cause)

@@ -12,6 +12,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from robosc.analysis.explain import data_in_short, explain, explore
+from robosc.analysis.explain.answers import Reach
 from robosc.model import rosgraph
 from robosc.run.runtime.core.json_text import json_text
 from robosc.tools.gate.admission import Limits, Rates, Writer
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
 
     T = TypeVar("T")
 
+#: Name of the tool that plays the robot.
+ROBOT = "robot"
 #: Verdicts of calls that changed nothing or failed.
 ERRORS = frozenset({"refused", "failed"})
 #: Seconds that an explanation may take, and that `wait` waits.
@@ -65,6 +68,11 @@ class Tool:
     call: Callable[[str, dict[str, Any]], Awaitable[dict[str, Any]]]
     writes: bool = False
 
+    @property
+    def reads(self) -> bool:
+        """Whether a call changes nothing."""
+        return not self.writes and self.name != ROBOT
+
 
 def refusal(reason: str, *because: str) -> dict[str, Any]:
     """Return the answer to a call that the gate itself refuses."""
@@ -75,7 +83,8 @@ def refusal(reason: str, *because: str) -> dict[str, Any]:
 class Gate:
     """Tools of a robot for clients; its coroutines run in one thread, and the layer in that of its node.
 
-    `robot`: the events of a robot without ROS, by their names.
+    `frames`: frames of the headers in the data of commands, by their ROS names without a leading slash. `robot`: the
+    events of a robot without ROS, by their names.
     """
 
     model: sct.SupervisoryControlModel
@@ -84,6 +93,7 @@ class Gate:
     layer: GatedLayer
     log: EventLog
     limits: Limits = field(default_factory=Limits)
+    frames: Mapping[str, str] = field(default_factory=dict)
     robot: Mapping[str, RobotEvent] = field(default_factory=dict)
     tools: dict[str, Tool] = field(init=False)
 
@@ -139,7 +149,7 @@ class Gate:
         if self.robot:
             events = Choice(tuple(self.robot), notes=("An event of the simulated robot.",))
             shape = Fields({"event": events, "data": Anything(notes=("Its data, as ROS has it.",))}, ("event",))
-            tools.append(Tool("robot", "Cause an event of the simulated robot.", shape, self._robot))
+            tools.append(Tool(ROBOT, "Cause an event of the simulated robot.", shape, self._robot))
         return tools
 
     async def call(self, client: str, name: str, data: Any) -> dict[str, Any]:
@@ -240,11 +250,8 @@ class Gate:
                 self.layer.start_goal(command.element, message, done)
 
     def _message(self, command: Command, data: Mapping[str, Any]) -> Message:
-        interface = command.element.interface
-        message = self.node.create(interface, command.section)
-        self.node.stamp(message, "")
-        self._messages.fill(message, interface, command.section, data)
-        return message
+        frame = self.frames.get(command.ros_name.removeprefix("/"), "")
+        return self._messages.create(command.element.interface, command.section, data, frame)
 
     async def _obstacle(self, command: Command, outcome: Outcome) -> dict[str, Any]:
         """Return why a command did not happen, and what would make it possible."""
@@ -408,6 +415,8 @@ def _without_verdict(answer: dict[str, Any]) -> dict[str, Any]:
 
 def _ways_out(explanation: Explanation, model: sct.SupervisoryControlModel) -> list[str]:
     """Return what would make a command possible, in words."""
+    if explanation.situation.reach is not Reach.SUPERVISED:
+        return []
     if explanation.data:
         return [f"Send data that fulfills: {note.text}" for note in explanation.data]
     short = data_in_short(explanation, model)

@@ -60,7 +60,7 @@ def server(gate: Gate, client_of: Callable[[ServerRequestContext[Any, Any]], str
                     name=tool.name,
                     description=tool.description,
                     input_schema=tool.shape.schema,
-                    annotations=types.ToolAnnotations(read_only_hint=not tool.writes),
+                    annotations=types.ToolAnnotations(read_only_hint=tool.reads),
                 )
                 for tool in gate.tools.values()
             ]

@@ -334,20 +334,26 @@ class Messages:
     #: New elements of arrays, by the place of the array in a type.
     _elements: dict[tuple[Any, ...], Message] = field(default_factory=dict)
 
-    def fill(self, message: Message, interface: rosgraph.Interface, section: Section, data: Mapping[str, Any]) -> None:
-        """Set fields of a new message of a type to converted data."""
-        self._fill(message, (interface, section), data)
+    def create(
+        self, interface: rosgraph.Interface, section: Section, data: Mapping[str, Any], frame: str = ""
+    ) -> Message:
+        """Return a message with converted data. Headers beside it that it leaves out get the time and the frame."""
+        message = self.port.create(interface, section)
+        self._fill(message, (interface, section), data, frame)
+        return message
 
-    def _fill(self, message: Message, place: tuple[Any, ...], data: Mapping[str, Any]) -> None:
+    def _fill(self, message: Message, place: tuple[Any, ...], data: Mapping[str, Any], frame: str) -> None:
         types = self.port.wire_types(message)
+        if "header" in types and "header" not in data:
+            self.port.stamp(message, frame)
         for name, value in data.items():
             inside = (*place, name)
             if isinstance(value, dict):
-                self._fill(getattr(message, name), inside, value)
+                self._fill(getattr(message, name), inside, value, frame)
             elif isinstance(value, list) and value and isinstance(value[0], dict):
                 elements = [self._element(inside) for _ in value]
                 for element, inner in zip(elements, value, strict=True):
-                    self._fill(element, (*inside, "0"), inner)
+                    self._fill(element, (*inside, "0"), inner, frame)
                 setattr(message, name, elements)
             elif types[name] == "octet":
                 setattr(message, name, bytes([value]))

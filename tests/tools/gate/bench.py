@@ -64,7 +64,8 @@ class Bench:
         self.path = folder / "calls.jsonl"
         self._log = EventLog(str(self.path))
         events = robot_events(self.node, graph, types)
-        self.gate = Gate(self.models.sct, commands(self.models), self.node, self.layer, self._log, limits, events)
+        known, frames = commands(self.models), configuration.frame_id
+        self.gate = Gate(self.models.sct, known, self.node, self.layer, self._log, limits, frames, events)
 
     def received(self) -> list[tuple[str, Any]]:
         """Return the commands that the robot has received, with their data."""

@@ -86,7 +86,9 @@ def test_raw_lines_on_standard_input(tmp_path: Path) -> None:
         program.stdin.close()
         assert program.wait(_PATIENCE) == 0
         assert program.stderr is not None
-        assert "Traceback" not in program.stderr.read()
+        printed = program.stderr.read()
+        assert "Traceback" not in printed
+        assert "frameId" not in printed
     for number in (2, 3, 4, 5):
         assert answers[number]["result"]["structuredContent"]["reason"] == "schema"
     assert {"error"} <= answers[6].keys() & answers[7].keys() & answers[9].keys()

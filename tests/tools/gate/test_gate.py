@@ -73,6 +73,8 @@ def test_each_command_is_a_tool_with_its_data(tmp_path: Path) -> None:
         tools = {tool.name: tool for tool in (await client.list_tools()).tools}
         commands = ["Base_velocity", "Base_gear", "Base_horn", "Base_text", "Lamp_light", "Navigation_go_to"]
         assert list(tools) == [*commands, "state", "why", "wait", "cancel", "release", "robot"]
+        reading = [name for name, tool in tools.items() if tool.annotations and tool.annotations.read_only_hint]
+        assert reading == ["state", "why", "wait"]
         for tool in tools.values():
             Draft202012Validator.check_schema(tool.input_schema)
         velocity = tools["Base_velocity"]
@@ -131,7 +133,9 @@ def test_a_goal_is_accepted_and_ends(tmp_path: Path) -> None:
         goal = {"pose": {"pose": {"position": {"x": 2.0}}}}
         assert (await call(client, "wait", command="Navigation_go_to"))["status"] == "none"
         assert await call(client, "Navigation_go_to", **goal) == {"verdict": "accepted"}
-        assert bench.received()[-1][1]["pose"]["pose"]["position"] == {"x": 2.0, "y": 0.0, "z": 0.0}
+        received = bench.received()[-1][1]["pose"]
+        assert received["pose"]["position"] == {"x": 2.0, "y": 0.0, "z": 0.0}
+        assert (received["header"]["frame_id"], received["header"]["stamp"]["sec"] > 0) == ("map", True)
         assert (await call(client, "Navigation_go_to", **goal))["reason"] == "busy"
         await call(client, "robot", event="Navigation.go_to.feedback", data={"distance_remaining": 1.5})
         running = await call(client, "wait", command="Navigation_go_to", seconds=0.01)
