@@ -123,7 +123,11 @@ def is_near(state: dict[str, Any]) -> bool:
 
 async def drive(client: Client) -> None:
     """Drive to the person, against the requirements, and away again."""
-    home, there = ({"pose": {"pose": {"position": {"x": x}}}} for x in (0.0, 1.0))
+    end = time.monotonic() + PATIENCE
+    while "warning" in await call(client, "Base_velocity", linear={"x": 0.0}):
+        assert time.monotonic() < end, "the robot is not connected"
+        await asyncio.sleep(0.2)
+    home, there = ({"pose": {"pose": {"position": {"x": x}}}} for x in (0.0, 100.0))
     assert (await call(client, "Base_velocity", linear={"x": 0.75}))["verdict"] == "sent"
     state = await until(client, is_near)
     assert not state["commands"]["Navigation_go_to"]["allowed"]
@@ -139,8 +143,7 @@ async def drive(client: Client) -> None:
     assert (await call(client, "Navigation_go_to", **home))["verdict"] == "accepted"
     ended = await call(client, "wait", command="Navigation_go_to", seconds=60.0)
     assert ended["status"] == "succeeded"
-    assert 0 <= ended["feedback"]["distance_remaining"] < 0.2
-    # On the way to the person the requirement falls: the layer cancels the goal.
+    # On the way, the robot comes near the person: the layer cancels the goal.
     assert (await call(client, "Navigation_go_to", **there))["verdict"] == "accepted"
     ended = await call(client, "wait", command="Navigation_go_to", seconds=60.0)
     assert ended["status"] == "canceled"
@@ -155,13 +158,14 @@ def test_a_client_writes_a_guard_and_drives_a_robot_through_it(run_ros2: Runner,
     with porter(run_ros2, folder, guard, "--config", str(CONFIGURATION)) as (client, received):
         asyncio.run(script(client))
         end = time.monotonic() + PATIENCE
-        while len(commands := read_lines(received)) < 8 and time.monotonic() < end:
+        while (commands := read_lines(received))[-2:] != [["canceled", True], ["velocity", 0.0]]:
+            assert time.monotonic() < end, commands
             time.sleep(0.05)
     # The first refusal stops the robot, and so does the end of the session.
-    driven = [["velocity", 0.75], ["velocity", 0.0], ["velocity", -1.0]]
-    assert commands[:3] == driven
-    assert commands[3:7] == [["light", True], ["go_to", 0.0], ["go_to", 1.0], ["canceled", True]]
-    assert commands[7:] == [["velocity", 0.0]]
+    expected = [*(["velocity", x] for x in (0.75, 0.0, -1.0)), ["light", True], ["go_to", 0.0], ["go_to", 100.0]]
+    assert commands[commands.index(["velocity", 0.75]) :] == [*expected, ["canceled", True], ["velocity", 0.0]]
     log = read_lines(folder / "calls.jsonl")
     verdicts = [entry["verdict"] for entry in log if entry["tool"] not in ("state", "wait")]
-    assert verdicts == ["sent", *["refused"] * 4, "limited", "answered", "accepted", "accepted", "released"]
+    others = [*["refused"] * 4, "limited", "answered", "accepted", "accepted", "released"]
+    assert verdicts[verdicts.index("refused") :] == others
+    assert set(verdicts[: verdicts.index("refused")]) == {"sent"}

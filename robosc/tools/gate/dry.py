@@ -240,6 +240,10 @@ class _Topic:
     robot: DryRobot
     publisher: rosgraph.Publisher
 
+    def get_subscription_count(self) -> int:
+        """Return 1: the robot."""
+        return 1
+
     def publish(self, message: Message) -> None:
         """Send a message to the robot."""
         (sending,) = self.publisher.sendings

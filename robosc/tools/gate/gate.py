@@ -7,7 +7,7 @@ import json
 import time
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -191,7 +191,7 @@ class Gate:
     def note(self, client: str, name: str, data: Any, answer: Mapping[str, Any]) -> None:
         """Log a call."""
         entry = {"time": time.time(), "client": client, "tool": name[:_SHOWN], "data": _loggable(data)}
-        entry |= {key: answer[key] for key in ("verdict", "reason", "because", "sent") if key in answer}
+        entry |= {key: answer[key] for key in ("verdict", "reason", "because", "sent", "warning") if key in answer}
         self.log.append(json_text(entry) + "\n")
         if lost := self.log.lost():
             self.node.warn(f"the log of calls lost {lost} lines")
@@ -230,6 +230,8 @@ class Gate:
     async def _command(self, command: Command, _: str, data: dict[str, Any]) -> dict[str, Any]:
         outcome = await self._post(partial(self._start, command, data))
         answer: dict[str, Any] = {"verdict": outcome.verdict}
+        if outcome.verdict not in ERRORS and not outcome.receivers:
+            answer["warning"] = f"no node is subscribed to {command.ros_name}"
         if outcome.verdict in ERRORS:
             answer |= await self._obstacle(command, outcome)
         elif outcome.verdict == "answered":
@@ -243,7 +245,8 @@ class Gate:
         message = self._message(command, data)
         match command.element:
             case rosgraph.Publisher():
-                done(self.layer.send(command.sending, message))
+                receivers = self.node.receivers(command.element)
+                done(replace(self.layer.send(command.sending, message), receivers=receivers))
             case rosgraph.ServiceClient():
                 self.layer.call(command.element, message, done)
             case rosgraph.ActionClient():

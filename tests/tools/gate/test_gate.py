@@ -113,6 +113,16 @@ def test_a_message_is_sent_limited_or_refused(tmp_path: Path) -> None:
     run(tmp_path, script)
 
 
+def test_a_message_that_nobody_receives(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    async def script(client: Client, bench: Bench) -> None:
+        monkeypatch.setattr(bench.node, "receivers", lambda _: 0)
+        answer = await call(client, "Base_velocity", linear={"x": 7})
+        assert (answer["verdict"], answer["warning"]) == ("limited", "no node is subscribed to /cmd_vel")
+        assert bench.calls()[-1]["warning"] == answer["warning"]
+
+    run(tmp_path, script)
+
+
 def test_a_service_answers_or_is_refused(tmp_path: Path) -> None:
     async def script(client: Client, _: Bench) -> None:
         await call(client, "robot", event="Lamp.light.response", data={"success": True, "message": "on"})

@@ -28,13 +28,14 @@ class Outcome:
 
     `verdict`: `sent` and `limited` for messages, `answered` for calls, `accepted` for goals; `refused` by the layer,
     `failed` on the robot's side. `message` is the data that was sent, or the response. `reason` and `because` are those
-    of `~/blocked`; of a failure, the reason and its text.
+    of `~/blocked`; of a failure, the reason and its text. `receivers` counts the nodes that a command could reach.
     """
 
     verdict: str
     message: Message = None
     reason: str = ""
     because: Sequence[str] = ()
+    receivers: int = 1
 
 
 class GatedLayer(Layer):

@@ -341,6 +341,10 @@ class RunningNode(ControllerPort, ABC):
         """Send a message."""
         self._publishers[publisher].publish(message)
 
+    def receivers(self, publisher: rosgraph.Publisher) -> int:
+        """Return the number of subscriptions to a topic that the node publishes."""
+        return int(self._publishers[publisher].get_subscription_count())
+
     @property
     def _topics(self) -> list[rosgraph.Subscription | rosgraph.Publisher]:
         return [*self._graph.subscriptions, *self._graph.publishers]
