@@ -60,9 +60,10 @@ class _Source:
     paths: Paths
     documents: Documents
 
-    def models(self, report: Report, *, cif: bool = True) -> Models:
-        """Return the models of the robot. Ends the report if there are errors."""
-        return read_models(self.path, self.paths, report, cif=cif, documents=self.documents)
+    def models(self, report: Report, memory: int, *, cif: bool = True) -> Models:
+        """Return the models of the robot. Ends the report if there are errors. `memory` is in bytes."""
+        with limit_memory(memory, "reading the model"):
+            return read_models(self.path, self.paths, report, cif=cif, documents=self.documents)
 
 
 class Calls:
@@ -137,14 +138,15 @@ class Calls:
         is_written = "text" not in arguments
         with limit_memory(self._memory, "the repair"):
             text, count = mended(source.path, source.documents.read(Path(source.path), is_input=False), source.paths)
-            if is_written and count:
-                write_file(source.path, text)
-            documents = source.documents if is_written else Documents({source.path: text})
+        if is_written and count:
+            write_file(source.path, text)
+        documents = source.documents if is_written else Documents({source.path: text})
+        with limit_memory(self._memory, "the check"):
             read(source.path, source.paths, report, documents)
         return 0, {"edits": count, "text": text}
 
     def _synthesize(self, arguments: Arguments, report: Report) -> tuple[int, dict[str, Any]]:
-        model = self._source(arguments).models(report).sct
+        model = self._source(arguments).models(report, self._memory).sct
         if arguments.get("counts"):
             counted, answer = count_states(model, self._memory)
             return (0 if counted.controlled_states else EMPTY_SUPERVISOR), answer
@@ -159,7 +161,7 @@ class Calls:
         state = arguments.get("state")
         if state is not None and event is None:
             raise CallError("`state` needs `event`")
-        model = self._source(arguments).models(report).sct
+        model = self._source(arguments).models(report, self._memory).sct
         answer = explore(model, emptiness if empty else question(model, event, state, never), self._memory)
         if answer is None and not empty:
             supervise(model, memory=self._memory)  # raises with the cause
@@ -167,7 +169,7 @@ class Calls:
 
     def _verify(self, arguments: Arguments, report: Report) -> tuple[int, dict[str, Any]]:
         source = self._source(arguments)
-        models = source.models(report)
+        models = source.models(report, self._memory)
         settings = read_configuration(source.path, self._config(arguments), report)
         supervise_models(models, report, memory=self._memory)
         verdicts = verify(models, settings)
@@ -182,7 +184,7 @@ class Calls:
         if is_loop and script is None:
             raise CallError("`loop` needs a `script`")
         source = self._source(arguments)
-        models = source.models(report, cif=not is_loop)
+        models = source.models(report, self._memory, cif=not is_loop)
         values = arguments.get("parameters", {}).items()
         texts = [f"{name}={value if isinstance(value, str) else json.dumps(value)}" for name, value in values]
         set_parameters(models.rosgraph, texts)

@@ -85,10 +85,10 @@ class Assistant:
 
 
 @contextmanager
-def assistant(*arguments: str | Path, cwd: Path | None = None) -> Iterator[Assistant]:
+def assistant(*arguments: str | Path) -> Iterator[Assistant]:
     """Start a server with these arguments, and connect a client to it."""
     program, *rest = command(*arguments)
-    server = StdioServerParameters(command=program, args=rest, env={**os.environ, "PYTHONPATH": str(ROOT)}, cwd=cwd)
+    server = StdioServerParameters(command=program, args=rest, env={**os.environ, "PYTHONPATH": str(ROOT)})
     loop, is_connected, ended = asyncio.new_event_loop(), threading.Event(), asyncio.Event()
     clients: list[Client] = []
 

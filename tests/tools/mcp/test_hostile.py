@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from mcp.shared.exceptions import MCPError
 
+from robosc.tools.mcp.tools import Calls
 from tests.tools.mcp.assistant import LONG, LONGEST, ROOT, Assistant, assistant, command
 
 if TYPE_CHECKING:
@@ -152,11 +153,12 @@ def test_imports_do_not_lead_out(robosc: Assistant) -> None:
     assert "outside of the folders that may be read" in str(answer.content)
 
 
-def test_folders_of_the_command_line_hold_libraries(desk: Path) -> None:
-    with assistant(desk / "..", "-I", "..", cwd=desk) as client:
-        text = "robot User {\n  component Own from Secret import Hidden\n}\n"
-        messages = [finding["message"] for finding in client.answer("check", text=text)["findings"]]
-        assert "there is no library `Secret`" not in messages
+def test_folders_of_the_command_line_hold_libraries(desk: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(desk)
+    text = "robot User {\n  component Own from Secret import Hidden\n}\n"
+    answers = [Calls([str(desk)], folders, [], 1 << 30).answer("check", {"text": text}) for folders in ([], [".."])]
+    assert [finding["message"] for finding in answers[0]["findings"]] == ["there is no library `Secret`"]
+    assert answers[1]["findings"] == []
 
 
 def test_nothing_is_overwritten(robosc: Assistant) -> None:
@@ -167,7 +169,8 @@ def test_nothing_is_overwritten(robosc: Assistant) -> None:
 def test_a_file_that_is_not_text(robosc: Assistant) -> None:
     (finding,) = robosc.answer("check", path="bytes.rscd")["findings"][:1]
     assert finding["message"] == "the byte 0xff is not UTF-8"
-    assert robosc.answer("fix", path="bytes.rscd")["result"]["edits"] == 0
+    fixed = robosc.answer("fix", path="bytes.rscd")
+    assert (fixed["result"]["edits"], fixed["findings"][0]) == (0, finding)
 
 
 def test_unknown_tools_and_resources(robosc: Assistant) -> None:
@@ -189,6 +192,7 @@ def test_texts_that_are_no_models(robosc: Assistant, text: str) -> None:
     assert robosc.answer("check", path="door.rscd")["exit_status"] == 0
 
 
+@pytest.mark.slow
 def test_a_long_synthesis_ends(desk: Path) -> None:
     """It delays no quick call."""
     with assistant(desk, "--seconds", "2") as client:
@@ -213,6 +217,7 @@ def test_a_canceled_call_ends(robosc: Assistant) -> None:
     assert robosc.answer("synthesize", path="door.rscd", counts=True)["result"]["robot"] == "Door"
 
 
+@pytest.mark.slow
 def test_a_thousand_calls_at_once(robosc: Assistant) -> None:
     """A hundred of them may wait; the others are refused. All are answered."""
 
@@ -283,6 +288,7 @@ def test_lines_that_are_no_messages(desk: Path) -> None:
     assert "Traceback" not in json.dumps(answers) + errors.decode()
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux ends a process with its parent")
 def test_the_processes_of_calls_end_with_the_server(desk: Path) -> None:
     """Also one that is busy, after SIGKILL."""
