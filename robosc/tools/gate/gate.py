@@ -36,8 +36,8 @@ if TYPE_CHECKING:
 ROBOT = "robot"
 #: Verdicts of calls that changed nothing or failed.
 ERRORS = frozenset({"refused", "failed"})
-#: Seconds that an explanation may take, and that `wait` waits.
-_PATIENCE = 5.0
+#: Seconds that the answer to a refused command waits for its explanation, and that of `why`, and that `wait` waits.
+_PATIENCE, _LONG_PATIENCE = 1.0, 5.0
 _LONGEST_WAIT, _WAIT = 60.0, 10.0
 #: Number of characters of data in the log, and of explanations in memory.
 _SHOWN, _MOST_EXPLAINED = 2000, 1000
@@ -109,7 +109,8 @@ class Gate:
         self._rates = Rates(self.limits, time.monotonic)
         self._writer = Writer(self.limits, time.monotonic)
         self._explained: dict[Any, Explanation | None] = {}
-        # One explanation at a time, also if nobody waits for the last one any more.
+        #: The explanation under way: its event and state, and its end.
+        self._explaining: tuple[Any, asyncio.Future[Explanation]] | None = None
         self._explainer = ThreadPoolExecutor(1, "explanations")
         self.tools = {tool.name: tool for tool in self._tools()}
 
@@ -256,13 +257,13 @@ class Gate:
         frame = self.frames.get(command.ros_name.removeprefix("/"), "")
         return self._messages.create(command.element.interface, command.section, data, frame)
 
-    async def _obstacle(self, command: Command, outcome: Outcome) -> dict[str, Any]:
+    async def _obstacle(self, command: Command, outcome: Outcome, patience: float = _PATIENCE) -> dict[str, Any]:
         """Return why a command did not happen, and what would make it possible."""
         possible = [_WAYS_OUT[outcome.reason]] if outcome.reason in _WAYS_OUT else []
         if outcome.reason in _OF_THE_STATE:
-            explanation = await self._explanation(command.sending.event)
+            explanation = await self._explanation(command.sending.event, patience)
             possible = [] if explanation is None else _ways_out(explanation, self.model)
-        answer = {"reason": outcome.reason, "because": list(outcome.because)}
+        answer: dict[str, Any] = {"reason": outcome.reason, "because": list(outcome.because)}
         return {**answer, "possible": possible} if possible else answer
 
     async def _why(self, _: str, data: dict[str, Any]) -> dict[str, Any]:
@@ -279,28 +280,33 @@ class Gate:
         outcome = await self._on_node(look)
         if outcome is None:
             return {"verdict": "explained", "allowed": True}
-        answer = {"verdict": "explained", "allowed": False, **await self._obstacle(command, outcome)}
-        explanation = await self._explanation(command.sending.event) if outcome.reason in _OF_THE_STATE else None
-        if explanation is not None:
-            short = data_in_short(explanation, self.model)
-            answer |= {"otherwise": short["otherwise"]} if short["otherwise"] else {}
-        return answer
+        obstacle = await self._obstacle(command, outcome, _LONG_PATIENCE)
+        return {"verdict": "explained", "allowed": False, **obstacle}
 
-    async def _explanation(self, event: sct.Event) -> Explanation | None:
-        """Return the explanation of a command in the present state; None if it takes too long or too much memory."""
+    async def _explanation(self, event: sct.Event, patience: float) -> Explanation | None:
+        """Return the explanation of a command in the present state; None if it is not ready within some seconds."""
         codes: dict[Any, int] = await self._on_node(lambda: dict(self.layer.codes))
         key = event, tuple(codes.values())
-        if key not in self._explained:
-            if len(self._explained) == _MOST_EXPLAINED:
+        if key not in self._explained and self._explaining is None:
+            self._explaining = key, self._explain(key, event, codes)
+        if self._explaining is not None and self._explaining[0] == key:
+            await asyncio.wait([self._explaining[1]], timeout=patience)
+        return self._explained.get(key)
+
+    def _explain(self, key: Any, event: sct.Event, codes: dict[Any, int]) -> asyncio.Future[Explanation]:
+        """Explain a command in a state, one at a time, however long it takes."""
+        look = partial(explore, self.model, lambda system: explain(system, event, codes))
+
+        def keep(explained: asyncio.Future[Explanation]) -> None:
+            self._explaining = None
+            if len(self._explained) >= _MOST_EXPLAINED:
                 self._explained.clear()
-            look = partial(explore, self.model, lambda system: explain(system, event, codes))
-            running = asyncio.get_running_loop().run_in_executor(self._explainer, look)
-            try:
-                async with asyncio.timeout(_PATIENCE):
-                    self._explained[key] = await running
-            except (TimeoutError, MemoryError):
-                return None
-        return self._explained[key]
+            # Too little memory, for example: there is no explanation of this state.
+            self._explained[key] = None if explained.cancelled() or explained.exception() else explained.result()
+
+        running = asyncio.get_running_loop().run_in_executor(self._explainer, look)
+        running.add_done_callback(keep)  # before those that wait for the end
+        return running
 
     # State and goals
 

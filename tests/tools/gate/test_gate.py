@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import asyncio
 import json
+import threading
 from typing import TYPE_CHECKING, Any
 
 import pytest
 from jsonschema import Draft202012Validator
 
+from robosc.tools.gate import gate as gate_module
 from robosc.tools.gate.commands import UnknownTypeError, commands, tool_name
 from robosc.tools.gate.shapes import faults_of
 from tests.tools.gate.bench import PORTER, call, connect, gate, models
@@ -195,6 +197,32 @@ def test_why_explains_and_sends_nothing(tmp_path: Path) -> None:
         assert goal["possible"][0].startswith("At once: `Person` goes from `near` to `away`")
         assert bench.state() == before
         assert bench.received() == []
+
+    run(tmp_path, script)
+
+
+def test_a_refusal_does_not_wait_for_a_long_explanation(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    go_on = threading.Event()
+    explore = gate_module.explore
+
+    def slow(*arguments: Any) -> Any:
+        assert go_on.wait(60)
+        return explore(*arguments)
+
+    async def script(client: Client, _: Bench) -> None:
+        await call(client, "robot", event="Person.seen", data={"data": True})
+        monkeypatch.setattr(gate_module, "explore", slow)
+        monkeypatch.setattr(gate_module, "_LONG_PATIENCE", 60)
+        because = ["requirement go_to needs Person.away"]
+        refused = {"verdict": "refused", "reason": "requirement", "because": because}
+        assert await call(client, "Navigation_go_to") == refused
+        light = await call(client, "Lamp_light")
+        assert "possible" not in light, "the explanation of another command is under way"
+        waiting = asyncio.create_task(call(client, "why", command="Navigation_go_to"))
+        await call(client, "state")
+        go_on.set()
+        assert (await waiting)["possible"][0].startswith("At once: `Person` goes")
+        assert (await call(client, "Navigation_go_to"))["possible"][0].startswith("At once: `Person` goes")
 
     run(tmp_path, script)
 
