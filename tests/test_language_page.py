@@ -47,10 +47,10 @@ def test_the_snippet_on_time_is_a_behaviour(tmp_path: Path) -> None:
 def test_the_standard_library_is_what_the_page_says() -> None:
     page = (DOCS / "language-libraries.md").read_text(encoding="utf-8")
     files = list(locate("robosc/stdlib").glob("*.rscd"))
-    assert len(files) == 3
+    assert len(files) == 4
     for file in files:
         text = file.read_text(encoding="utf-8")
-        for kind in ("library", "component", "message"):
+        for kind in ("library", "component", "message", "action"):
             for name in re.findall(rf"^ *{kind} (\w+)", text, re.MULTILINE):
                 assert f"`{name}`" in page
 

@@ -19,6 +19,8 @@ def main(arguments):
     options = _parser().parse_args(arguments)
     if options.pictures:
         return _draw_all(Path(options.pictures))
+    if options.guard:
+        return _guard(options)
     simulation = Simulation(SCENARIOS[options.scenario], options.seed)
     until = over(simulation, options.until)
     try:
@@ -42,6 +44,18 @@ def main(arguments):
             Path(options.picture).write_text(picture(simulation), encoding="utf-8")
     said("the goal was " + (f"reached after {simulation.reached_at:.1f} s" if simulation.reached else "not reached"))
     return 0 if simulation.reached else 1
+
+
+def _guard(options):
+    from .guarding import guard_scenario, report
+
+    trial = guard_scenario(options.scenario, options.seed)
+    tally = trial.run(options.commands)
+    if options.record:
+        _write_lines(options.record, trial.world.record)
+    if options.picture:
+        Path(options.picture).write_text(picture(trial.world), encoding="utf-8")
+    return report(options.scenario, tally)
 
 
 def _draw_all(folder):
@@ -70,7 +84,15 @@ def _parser():
         "--pictures", metavar="FOLDER", help="play all scenarios without ROS and draw them to this folder"
     )
     parser.add_argument("--ros", choices=["1", "2", "none"], default="none", help="none: with a controller of its own")
-    parser.add_argument("--seed", type=int, default=0, help="of the sensors' errors")
+    parser.add_argument(
+        "--guard",
+        action="store_true",
+        help="replace the controller by a random agent behind a guard, and the events of the scenario by random ones",
+    )
+    parser.add_argument(
+        "--commands", type=_positive, default=10_000, help="with --guard: the number of the agent's commands"
+    )
+    parser.add_argument("--seed", type=int, default=0, help="of the sensors' errors, and of the random agent")
     parser.add_argument(
         "--speed",
         type=_positive,

@@ -31,7 +31,12 @@ ZERO = {"x": 0.0, "y": 0.0, "z": 0.0}
 POSE = {"header": {"frame_id": ""}, "pose": {"position": ZERO, "orientation": {**ZERO, "w": 1.0}}}
 DEFAULTS = {
     "Twist": {"linear": ZERO, "angular": ZERO},
+    "TwistStamped": {
+        "header": {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": ""},
+        "twist": {"linear": ZERO, "angular": ZERO},
+    },
     "Int16": {"data": 0},
+    "Bool": {"data": False},
     "NavigateToPose": {"pose": POSE},
     "SpeedLimit": {"percentage": False},
 }
@@ -78,8 +83,9 @@ def connected(simulation, models, log, kind=Controller):
 
 
 def config_beside(model):
-    """Return the configuration of a model."""
-    return config.read(model.parent / config.FILE_NAME)
+    """Return the configuration of a model: that of the file beside it, if there is one."""
+    path = model.parent / config.FILE_NAME
+    return config.read(path) if path.exists() else config.Configuration()
 
 
 class Node:
@@ -167,7 +173,7 @@ class SupervisedNode:
         """Handle a command of the controller, and forward it to the world if the layer permits it."""
         forwarded = self._layer.forwarded(self._sendings[topic], Sent(data))
         if forwarded is not None:
-            self._world.receive(topic, _plain(forwarded))
+            self._world.receive(topic, plain(forwarded))
 
     def work(self):
         """Run all functions that are due now."""
@@ -183,13 +189,13 @@ class WorldPort:
     """The middleware of a controller, implemented by the simulation."""
 
     def __init__(self, simulation):
-        self._simulation = simulation
+        self.simulation = simulation
         self._numbers = count(1)
         self._goals = {}
 
     def now(self):
         """Return the world's time."""
-        return self._simulation.time
+        return self.simulation.time
 
     def hear(self):
         """Do nothing: all messages have arrived."""
@@ -213,25 +219,25 @@ class WorldPort:
 
     def publish(self, publisher, message):
         """Send a message to the world."""
-        self._simulation.receive(publisher.topic, _plain(message))
+        self.simulation.receive(publisher.topic, plain(message))
 
     def is_served(self, client):
         """Return whether the world has this server."""
-        return client.identifier in self._simulation.serves or client.identifier in self._simulation.answers
+        return client.identifier in self.simulation.serves or client.identifier in self.simulation.answers
 
     def call(self, client, request, handlers):
         """Call a service of the world."""
-        self._simulation.ask(client.identifier, handlers, _plain(request))
+        self.simulation.ask(client.identifier, handlers, plain(request))
 
     def send_goal(self, client, goal, handlers):
         """Send a goal to the world."""
         number = next(self._numbers)
         self._goals[number] = handlers
-        if self._simulation.start(client.identifier, number, _plain(goal)):
+        if self.simulation.start(client.identifier, number, plain(goal)):
             handlers.accepted()
         else:
             handlers.rejected()
-        return Goal(self._simulation, client.identifier, number, handlers)
+        return Goal(self.simulation, client.identifier, number, handlers)
 
     def take(self, news):
         """Deliver an answer or news of a goal."""
@@ -283,7 +289,7 @@ class Client:
 
     def give(self, response=None):
         """Take the response of a service."""
-        self._simulation.answered(self._name, {} if response is None else _plain(response))
+        self._simulation.answered(self._name, {} if response is None else plain(response))
 
     def feed_back(self, feedback):
         """Ignore feedback."""
@@ -350,18 +356,18 @@ class Sent:
         self._data[name] = value
 
 
-def _plain(value):
+def plain(value):
     """Return data as nested dicts, including received data that is forwarded in it."""
     if isinstance(value, (Sent, Received)):
-        return _plain(value._data)  # noqa: SLF001  # a class of this module
-    return {name: _plain(part) for name, part in value.items()} if isinstance(value, dict) else value
+        return plain(value._data)  # noqa: SLF001  # a class of this module
+    return {name: plain(part) for name, part in value.items()} if isinstance(value, dict) else value
 
 
 class _Types(dict):
     """The types of a message's fields. Whole numbers have 16 bits."""
 
     def __init__(self, message):
-        super().__init__((name, _type(value)) for name, value in _plain(message).items())
+        super().__init__((name, _type(value)) for name, value in plain(message).items())
 
     def __missing__(self, name):
         return "float64"

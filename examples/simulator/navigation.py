@@ -60,13 +60,15 @@ class Navigation(Device):
 
     def accept(self, world, goal, data):
         """Begin a journey. Return whether that is possible."""
-        if self._origin is None or data["pose"]["header"]["frame_id"] != "map":
+        position = data["pose"]["pose"]["position"]
+        destination = position["x"], position["y"]
+        known = self._origin is not None and data["pose"]["header"]["frame_id"] == "map"
+        if not known or not all(map(math.isfinite, destination)):
             self._news.append("a goal is rejected")
             return False
         if self._goal is not None:
             self._end(world, "aborted", "gives way to a newer goal")
-        position = data["pose"]["pose"]["position"]
-        self._goal, self._destination = goal, (position["x"], position["y"])
+        self._goal, self._destination = goal, destination
         self._way, self.recoveries, self._backing_until, self._planned = None, 0, None, -math.inf
         self._seen.clear()
         self._news.append("sets off")

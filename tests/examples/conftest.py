@@ -7,9 +7,10 @@ import robosc
 from robosc.m2t.models import Models
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-#: Every model of one robot, by its name; `test_fleet.py` is about the fleet.
+#: Every model of one robot, by its name; `test_fleet.py` is about the fleet, and `test_guards.py` about the guards.
 #: The workspaces contain copies of one of them.
-MODELS = {path.stem: path for path in sorted(EXAMPLES.rglob("*.rscd")) if not {"workspace", "fleet"} & {*path.parts}}
+ELSEWHERE = {"workspace", "fleet", "guards"}
+MODELS = {path.stem: path for path in sorted(EXAMPLES.rglob("*.rscd")) if not ELSEWHERE & {*path.parts}}
 #: Robots of the second edition, with too many states to enumerate.
 SHOWCASES = ["sprayer", "warehouse_robot"]
 #: All examples: folders with a page.

@@ -1,0 +1,1 @@
+"""Twelve guards: small models for the supervisory layer, with worlds and judges."""
