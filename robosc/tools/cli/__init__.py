@@ -55,6 +55,7 @@ _GROUPS = {
         "transform": "Generate code and models.",
         "run": "Run the controller as a ROS node, without building it.",
         "graph": "Write the nodes of the running ROS system as JSON.",
+        "gate": "Let a language model or another program command a robot, behind its supervisor.",
         "interfaces": "Build ROS 2 types of your own, without colcon.",
     },
     "Editors": {

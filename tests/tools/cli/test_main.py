@@ -32,6 +32,7 @@ COMMANDS = [
     "transform",
     "run",
     "graph",
+    "gate",
     "interfaces",
     "lsp",
     "dap",
