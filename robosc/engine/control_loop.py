@@ -248,8 +248,21 @@ class ControlLoop:
             return False
         if not self.engine.permits_inputs(event):
             return False
+        self._happen(event)
+        return True
+
+    def force(self, event: str) -> None:
+        """Perform an event that has happened although the supervisor or an assumption forbids it; see `Engine.force`.
+
+        The hook `before` is called as for other events, but cannot withhold it.
+        """
+        if self.hooks.before is not None:
+            self.hooks.before(event)
+        self._happen(event)
+
+    def _happen(self, event: str) -> None:
         self.timers.before(event)
-        self.engine.perform(event)
+        self.engine.force(event)
         self._quiescent = False
         self._owed.discard(event)
         for queue in (self._cancels, self._triggers):
@@ -260,7 +273,6 @@ class ControlLoop:
             self._taken.add(self._groups[event])
         if self.hooks.after is not None:
             self.hooks.after(event)
-        return True
 
     def _settle(self) -> None:
         left = self._bound

@@ -1,0 +1,366 @@
+"""Judge of a recorded run: each command by the supervisor, each event of the robot by the model."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from robosc.engine import Blocked
+from robosc.engine import Settings as LoopSettings
+from robosc.model import engine, rosgraph, sct
+from robosc.model import expression as ex
+from robosc.model.semantics.edges import edges_by_event, origin
+from robosc.model.semantics.messages import path_of, receptions, sent_messages
+from robosc.model.semantics.operators import UnreadableError
+from robosc.model.semantics.roles import assumption_text, event_name, plant_of
+from robosc.run.audit.findings import SECOND, Audit, Finding, Kind
+from robosc.run.audit.shared_topics import SharedTopics
+from robosc.run.runtime.core.composer import Composer
+from robosc.run.runtime.core.event_handler import EventHandler
+from robosc.run.runtime.core.event_loop import EventLoop
+from robosc.run.runtime.core.node_data import UNSENDABLE, within_range, why_unsendable
+from robosc.run.runtime.core.times import RESOLUTION_MS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping, Sequence
+
+    from robosc.engine.state import State
+    from robosc.model.semantics.component_parts import Parts
+    from robosc.run.audit.port import RecordingPort
+    from robosc.run.runtime.core.json_text import Json
+    from robosc.run.runtime.core.port import Client, Message
+    from robosc.run.runtime.core.settings import Settings
+
+    #: Called after each event with its name, and for each finding with the name of its event and the finding.
+    Watch = Callable[[str, Finding | None], None]
+
+#: The clock of the judge starts at this time in seconds: a clock at 0 has not begun.
+_START = 1.0
+#: Nanoseconds for which past states are remembered.
+_MEMORY = SECOND
+
+
+class Judge(EventHandler):
+    """Judge of the commands of a layer. It forwards nothing: the recorded command has reached the robot.
+
+    A forbidden command, and an event against an assumption, happen for all components that have a transition for it.
+    A command that was permitted `tolerance` nanoseconds ago, or since then, is no finding. `watch` is called after each
+    event with its name, and for each finding with the finding.
+    """
+
+    def __init__(
+        self,
+        graph: rosgraph.RosGraph,
+        settings: Settings,
+        port: RecordingPort,
+        tolerance: int = 0,
+        watch: Watch | None = None,
+    ) -> None:
+        port.time = _START
+        super().__init__(graph, settings, port, EventLoop(port.now), LoopSettings(resolution_ms=RESOLUTION_MS))
+        self.audit = Audit(graph.name)
+        self.engine = self._control.engine
+        self.timers = self._control.timers
+        self._recorder = port
+        self._tolerance = tolerance
+        self._watch = watch
+        self._composer = Composer(port, self._data)
+        self._shared = SharedTopics(port, self._data)
+        self._names = {event: name for name, event in self._events.items()}
+        #: Topic of the present message.
+        self.topic = ""
+        self._time = 0
+        #: Past states, with the times at which they began, the latest last.
+        self._past: deque[tuple[int, State]] = deque()
+        self._transitions = self._places_of_transitions()
+        self._ranges = {
+            reception.event: [
+                (assigned.value, assigned.input.type)
+                for assigned in reception.inputs
+                if isinstance(assigned.value, rosgraph.WireAccess) and isinstance(assigned.input.type, ex.IntegerType)
+            ]
+            for reception in receptions(graph)
+        }
+        self._plants = {
+            element: f"{element.origin or element.name}"
+            for element in graph.model.plants
+            if element.kind == sct.PlantKind.behaviour
+        }
+
+    def _places_of_transitions(self) -> dict[sct.Event, list[tuple[sct.Plant, frozenset[int]]]]:
+        """Return the components with transitions for a message, each with the positions of the states that have one.
+
+        Components with a transition in every state are left out.
+        """
+        places: dict[sct.Event, list[tuple[sct.Plant, frozenset[int]]]] = {}
+        for event, taking_part in edges_by_event(self._graph.model.plants).items():
+            if event.kind is not sct.EventKind.response or plant_of(event).kind != sct.PlantKind.message:
+                continue
+            for plant, edges in taking_part.items():
+                written = [edge for edge in edges if edge.source is not None]
+                owners = [origin(edge) for edge in written]
+                if plant.kind == sct.PlantKind.behaviour and written and None not in owners:
+                    positions = frozenset(number for number, place in enumerate(plant.locations) if place in owners)
+                    if len(positions) < len(plant.locations):
+                        places.setdefault(event, []).append((plant, positions))
+        return places
+
+    # Time
+
+    def begin(self, time: int, state: Mapping[sct.Plant | sct.DiscreteVariable, Any] | None = None) -> None:
+        """Start at a time in nanoseconds, in the initial state, or in the state that differs in these values."""
+        self.audit.start = self._time = time
+        if state:
+            self.engine.state = self.engine.state_with(state)
+        self._times.start()
+        with self._times:
+            self._control.settle()
+        self._remember()
+
+    def start(self) -> None:
+        """Do nothing: `begin` starts at a time."""
+
+    def advance(self, time: int) -> None:
+        """Let time pass; a time before the latest one counts as that. Timers expire at their times."""
+        port, loop, start = self._recorder, self._event_loop, self.audit.start or 0
+        now = _START + (time - start) / SECOND
+        while (wait := loop.run_pending()) is not None and port.time + wait <= now:
+            port.time = max(port.time + wait, math.nextafter(port.time, math.inf))
+            self._time = max(self._time, start + round((port.time - _START) * SECOND))
+        port.time = max(port.time, now)
+        self._time = max(self._time, time)
+        self.audit.end = self._time
+
+    def call_later(self, seconds: float, action: Callable[[], None]) -> Any:
+        """Make a call after some time of the recording."""
+        return self._event_loop.call_later(seconds, action)
+
+    def _remember(self) -> None:
+        """Remember the present state if it is new."""
+        state, past = self.engine.state, self._past
+        if past and past[-1][1].cells is state.cells:
+            return
+        past.append((self._time, state))
+        limit = self._time - max(_MEMORY, self._tolerance)
+        while len(past) > 1 and past[1][0] <= limit:
+            past.popleft()
+
+    def _permitted_before(self, name: str, *, with_data: bool) -> int | None:
+        """Return the nanoseconds since a command was last permitted; None if that is unknown."""
+        ended = self._time
+        for began, state in reversed(self._past):
+            if self.engine.enabled(name, state) and (not with_data or self.engine.permits_inputs(name, state)):
+                return self._time - ended
+            ended = began
+        return None
+
+    # Findings
+
+    def _find(
+        self, kind: Kind, event: sct.Event, reason: str, because: Sequence[str], since: int | None = None
+    ) -> None:
+        plant = plant_of(event)
+        name = plant.origin or plant.name
+        components = self._reports.components()
+        finding = Finding(kind, self._names[event], name, self.topic, reason, because, components, since)
+        finding = self.audit.add(finding, self._time)
+        if self._watch is not None:
+            self._watch(finding.event, finding)
+
+    def unexpected(self, event: sct.Event, why: str) -> None:
+        """Add a finding of an event that the model does not expect."""
+        self._find(Kind.UNEXPECTED, event, "state", [why])
+
+    # Commands
+
+    def published(self, publisher: rosgraph.Publisher, message: Message) -> None:
+        """Judge a message on a topic of commands."""
+        sendings = list(publisher.sendings)
+        if len(sendings) == 1:
+            self.command(sendings[0], message)
+            return
+        having = [sending for sending in sendings if self._shared.has_data(sending, message)]
+        if not having:
+            having = [sending for sending in sendings if not self._shared.is_constant(sending)]
+        if having:
+            permitted = (sending for sending in having if self._is_permitted(sending, message))
+            self.command(next(permitted, having[0]), message)
+            return
+        names = " and ".join(f"`{sending.name}`" for sending in sendings)
+        forbidden = (sending for sending in sendings if not self._is_permitted(sending, message))
+        chosen = next(forbidden, sendings[0])
+        self.unexpected(chosen.event, f"{names} never have this data")
+        self.command(chosen, message)
+
+    def _is_permitted(self, sending: rosgraph.Sending, message: Message) -> bool:
+        name = self._names[sending.event]
+        return self.engine.enabled(name) and not self._set_inputs(sending, message) and self.engine.permits_inputs(name)
+
+    def command(self, sending: rosgraph.Sending, message: Message, *, is_known: bool = True) -> bool:
+        """Judge a command with its data; return whether the model has a transition for it.
+
+        Without `is_known`, the recording does not have the data: the command is a finding if no data permits it.
+        """
+        event = sending.event
+        name = self._names[event]
+        self.audit.commands += 1
+        with self._times:
+            fault = self._set_inputs(sending, message) if is_known else ""
+            is_permitted = self.engine.enabled(name) and (not is_known or self.engine.permits_inputs(name))
+            if fault:
+                self._find(Kind.FORBIDDEN, event, "data", [fault])
+            elif not is_permitted:
+                since = self._permitted_before(name, with_data=is_known)
+                if since is None or since > self._tolerance:
+                    reason = self._blocking.reason(event)
+                    self._find(Kind.FORBIDDEN, event, reason.kind, reason.because, since)
+            elif is_known and (beyond := self._beyond_limits(sending, message)):
+                self._find(Kind.FORBIDDEN, event, "limit", beyond)
+            else:
+                self.audit.clear(name)
+            happens = self._has_transition(name, with_data=is_known and not fault)
+            if happens:
+                self._sent = message
+                self._control.force(name)
+                self._sent = None
+                self._control.settle()
+        self._remember()
+        return happens
+
+    def _has_transition(self, name: str, *, with_data: bool) -> bool:
+        """Return whether the plants have a transition for a command."""
+        if self.engine.blocked_by(name) is Blocked.PLANT:
+            return False
+        return not with_data or self.engine.inputs_blocked_by(name) is not Blocked.PLANT
+
+    def _set_inputs(self, sending: rosgraph.Sending, message: Message) -> str:
+        """Set the inputs of a command; return why they can't be read, empty if they can."""
+        if not sending.inputs:
+            return ""
+        try:
+            self.engine.set_inputs(self._names[sending.event], self._composer.inputs(sending, message))
+        except UNSENDABLE as error:
+            return why_unsendable(error)
+        return ""
+
+    def _beyond_limits(self, sending: rosgraph.Sending, message: Message) -> list[str]:
+        """Return the fields of a command that its limits would change, in words."""
+        if not sending.limits:
+            return []
+        try:
+            limited = self._composer.limited_fields(sending, message)
+        except UNSENDABLE as error:
+            return [why_unsendable(error)]
+        beyond = []
+        for path, value in limited.items():
+            own = message
+            for step in path:
+                own = getattr(own, step)
+            own = own.tolist() if hasattr(own, "tolist") else own
+            if own != value:
+                beyond.append(f"{'.'.join(path)} is {own}, limited to {value}")
+        return beyond
+
+    def cancel(self, client: rosgraph.ActionClient) -> None:
+        """Note that the robot cancels a goal: a cancel of the model if the supervisor permits it now."""
+        with self._batch():
+            self._control.perform(self._names[client.cancel])
+
+    def adopt(self, client: rosgraph.ActionClient) -> None:
+        """Note that a goal is active that the model does not know: its request happens without a judgement."""
+        name = self._names[client.request.event]
+        if self._has_transition(name, with_data=False):
+            with self._batch():
+                self._control.force(name)
+
+    # Events of the robot
+
+    @contextmanager
+    def _batch(self) -> Iterator[None]:
+        with self._times:
+            yield
+            self._control.settle()
+        self._remember()
+
+    def _perform(
+        self,
+        event: sct.Event,
+        inputs: Sequence[rosgraph.InputAssignment] = (),
+        message: Message = None,
+        source: sct.Event | None = None,
+    ) -> UnreadableError | None:
+        """Perform an event of the robot, also against an assumption; return why its data can't be read, else None."""
+        self.audit.events += 1
+        name, violated = self._names[event], []
+        if not self._control.enabled(name):
+            violated = self.engine.violated_assumptions(name)
+            if not violated:
+                self._find(Kind.UNEXPECTED, event, "state", self._states_of(event))
+                return None
+        try:
+            received = self._data.receive(event, inputs, message)
+        except UnreadableError as fault:
+            self._find(Kind.UNEXPECTED, event, "data", [str(fault)])
+            return fault
+        except AttributeError as fault:  # a type of another version
+            self._find(Kind.UNEXPECTED, event, "data", [f"the message has no field `{fault.name}`"])
+            return UnreadableError(str(fault))
+        outside = self._outside(event, message)
+        if violated:
+            self._find(Kind.ASSUMPTION, event, "assumption", list(map(assumption_text, violated)))
+        elif outside:
+            self._find(Kind.UNEXPECTED, event, "range", outside)
+        else:
+            self.audit.clear(name)
+        for plant, positions in self._transitions.get(event, ()):
+            if (position := self.engine.location(plant)) not in positions:
+                self.audit.ignore(name, f"{self._plants[plant]}.{plant.locations[position].name}")
+        self._data.variables.update(received.variables)
+        if violated:
+            self.engine.set_inputs(name, received.inputs)
+            self._control.force(name)
+        else:
+            self._run(event, (source or event, message), received.inputs)
+        return None
+
+    def _outside(self, event: sct.Event, message: Message) -> list[str]:
+        """Return the integers of a message that are outside their range, in words."""
+        outside = []
+        for access, kind in self._ranges.get(event, ()):
+            try:
+                value = self._data.value(access, message)
+            except UnreadableError:
+                continue
+            if within_range(value, kind) != value:
+                place = ".".join(path_of(access))
+                outside.append(f"{place} is {value}, expected {kind.minimum} to {kind.maximum}")
+        return outside
+
+    def _states_of(self, event: sct.Event) -> list[str]:
+        """Return the state in which an answer is not possible: that of its communication."""
+        plant = plant_of(event)
+        return [f"{plant.origin or plant.name}.{plant.locations[self.engine.location(plant)].name}"]
+
+    # Hooks of the event handler
+
+    def _follow_up(self) -> None:
+        self._control.settle()
+        self._remember()
+
+    def _after(self, name: str) -> None:
+        if self._watch is not None:
+            self._watch(name, None)
+
+    def _act(self, event: sct.Event) -> tuple[str, Mapping[str, Json] | None] | None:  # noqa: ARG002
+        return None
+
+    def _halt(self) -> None:
+        """Go on: the robot is recorded."""
+
+    def _note_failure(self, client: Client, why: str, *, logged: bool = False) -> None:
+        """Note nothing: the end is an event."""
+
+    def _faults(self, parts: Parts) -> list[str]:  # noqa: ARG002
+        return []
