@@ -24,7 +24,9 @@ if TYPE_CHECKING:
 
     from robosc.base.recordings import Channel
     from robosc.base.ros_types import RosTypes
+    from robosc.engine import Engine
     from robosc.engine.state import Value
+    from robosc.engine.timers import Timers
     from robosc.language.configuration import Configuration
     from robosc.model import rosgraph, sct
     from robosc.run.audit.judge import Watch
@@ -59,6 +61,7 @@ class RecordingJudge:
         path: str,
         options: AuditOptions | None = None,
     ) -> None:
+        self.path = path
         self._options = options or AuditOptions()
         self._recording = Recording(path, types)
         self._ros = 1 if path.endswith(".bag") else 2
@@ -81,6 +84,21 @@ class RecordingJudge:
             name = options.remappings.get(name) or options.remappings[f"/{name}"]
         return name if name.startswith("/") else f"{options.namespace.rstrip('/')}/{name}"
 
+    @property
+    def audit(self) -> Audit:
+        """The result so far."""
+        return self.judge.audit
+
+    @property
+    def engine(self) -> Engine:
+        """The engine, in the present state of the robot."""
+        return self.judge.engine
+
+    @property
+    def timers(self) -> Timers | None:
+        """The timers of the model."""
+        return self.judge.timers
+
     def run(self) -> Audit:
         """Judge the whole recording. Raises RecordingError, and OSError."""
         judge, recording, topics = self.judge, self._recording, self._topics
@@ -96,6 +114,5 @@ class RecordingJudge:
             handle = handlers[channel]
             if handle is not None:
                 handle(data)
-        audit = judge.audit
-        audit.unseen = topics.unseen(self._ros)
-        return audit
+        self.audit.unseen = topics.unseen(self._ros)
+        return self.audit

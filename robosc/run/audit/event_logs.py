@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from robosc.base.ros_types import RosTypes
     from robosc.engine.state import Value
+    from robosc.engine.timers import Timers
     from robosc.model import rosgraph
     from robosc.run.audit.judge import Watch
     from robosc.run.runtime.core.json_text import Json
@@ -54,8 +55,10 @@ class LogJudge:
         self._simulation = Simulation(model, graph, types)
         self.engine = self._simulation.engine
         self.engine.state = self.engine.state_with(state or {})
+        #: The log has the timeouts: no timer runs.
+        self.timers: Timers | None = None
         self.audit = Audit(model.name)
-        self._path = path
+        self.path = path
         self._watch = watch
         self._blocking = Blocking(self.engine)
         self._events = {event_name(event): event for plant in model.plants for event in plant.events}
@@ -70,7 +73,7 @@ class LogJudge:
     def _entries(self) -> Iterator[tuple[int, dict[str, Any]]]:
         """Yield the objects of the lines, with their numbers. An incomplete last line is left out."""
         size = 0
-        with open_file(self._path) as file:
+        with open_file(self.path) as file:
             for number, line in enumerate(iter(lambda: file.readline(_LONGEST + 1), b""), 1):
                 size += len(line)
                 if len(line) > _LONGEST or size > 8 * MOST_BYTES:
