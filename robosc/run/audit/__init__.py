@@ -114,5 +114,6 @@ class RecordingJudge:
             handle = handlers[channel]
             if handle is not None:
                 handle(data)
+        judge.decide()
         self.audit.unseen = topics.unseen(self._ros)
         return self.audit

@@ -32,7 +32,8 @@ class Finding:
     `name` is the communication, such as `Base.move`; `topic` that of the message, empty in an event log. `reason` is as
     on `~/blocked`, or `limit`; of an unexpected event, `state`, `data`, `range` or `unknown`. `because` gives the
     causes in words. `components` is the state at the first time. `since` has the nanoseconds since the supervisor last
-    permitted the command, None if that is unknown or longer than a second ago. `times` are in nanoseconds.
+    permitted the command, None if that is unknown or longer than a second ago. `unheard` has the components that decide
+    on it and of which the recording had no event yet. `times` are in nanoseconds.
     """
 
     kind: Kind
@@ -43,6 +44,7 @@ class Finding:
     because: Sequence[str]
     components: Mapping[str, Json]
     since: int | None = None
+    unheard: Sequence[str] = ()
     times: list[int] = field(default_factory=list)
 
     @property
@@ -56,7 +58,8 @@ class Finding:
 class Audit:
     """Result of an audit. `start` and `end` are the times of its first and last message, in nanoseconds.
 
-    `commands` counts the judged commands, `events` those of the robot. `ignored` counts the messages for which a
+    `commands` counts the judged commands, `tolerated` those that were permitted only shortly before or after, `events`
+    those of the robot. `ignored` counts the messages for which a
     component has no transition, by event and state. `unseen` has the parts of the model that the recording cannot show,
     with the reason. `notes` are further limits of the result.
     """
@@ -65,6 +68,7 @@ class Audit:
     start: int | None = None
     end: int | None = None
     commands: int = 0
+    tolerated: int = 0
     events: int = 0
     findings: list[Finding] = field(default_factory=list)
     ignored: dict[tuple[str, str], int] = field(default_factory=dict)
@@ -100,6 +104,7 @@ class Audit:
             "start": None if self.start is None else self.start / SECOND,
             "end": None if self.end is None else self.end / SECOND,
             "commands": self.commands,
+            "tolerated": self.tolerated,
             "events": self.events,
             "findings": [self._finding(finding) for finding in self.findings],
             "ignored": [
@@ -120,6 +125,7 @@ class Audit:
             "reason": finding.reason,
             "because": list(finding.because),
             **details,
+            **({"unheard": list(finding.unheard)} if finding.unheard else {}),
             "components": dict(finding.components),
             "times": [round(self.seconds(time), 6) for time in finding.times],
         }

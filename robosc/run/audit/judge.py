@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections import deque
 from contextlib import contextmanager
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from robosc.engine import Blocked
@@ -42,11 +43,30 @@ _START = 1.0
 _MEMORY = SECOND
 
 
+@dataclass(eq=False)
+class _Command:
+    """A command of the recording, as one of several that share a topic.
+
+    While it waits, `chosen` is the one that its `findings` are about. `is_accepted`: it was permitted shortly before.
+    """
+
+    sendings: Sequence[rosgraph.Sending]
+    message: Message
+    is_known: bool
+    topic: str
+    time: int
+    done: Callable[[bool], None] | None
+    chosen: Any = None
+    findings: list[Finding] = field(default_factory=list)
+    is_accepted: bool = False
+
+
 class Judge(EventHandler):
     """Judge of the commands of a layer. It forwards nothing: the recorded command has reached the robot.
 
     A forbidden command, and an event against an assumption, happen for all components that have a transition for it.
-    A command that was permitted `tolerance` nanoseconds ago, or since then, is no finding. `watch` is called after each
+    A command that is permitted at some time within `tolerance` nanoseconds before or after it is no finding: recordings
+    do not order the messages of different topics more precisely. `watch` is called after each
     event with its name, and for each finding with the finding.
     """
 
@@ -88,6 +108,23 @@ class Judge(EventHandler):
             for element in graph.model.plants
             if element.kind == sct.PlantKind.behaviour
         }
+        #: Components of which no event has happened yet, and the components of each event.
+        self._unheard = set(self._plants)
+        self._involved = {
+            event_name(event): [plant for plant in taking_part if plant in self._plants]
+            for event, taking_part in edges_by_event(graph.model.plants).items()
+        }
+        self._decisive: dict[sct.Event, set[sct.Plant]] = {}
+        #: Commands that are not permitted yet, in the order of their times.
+        self._waiting: deque[_Command] = deque()
+
+    def _deciding(self, event: sct.Event) -> set[sct.Plant]:
+        """Return the components whose states and variables decide whether an event is possible."""
+        if event not in self._decisive:
+            elements = self.engine.reads(self._names[event])
+            plants = {element if isinstance(element, sct.Plant) else element.eContainer() for element in elements}
+            self._decisive[event] = plants & self._plants.keys()
+        return self._decisive[event]
 
     def _places_of_transitions(self) -> dict[sct.Event, list[tuple[sct.Plant, frozenset[int]]]]:
         """Return the components with transitions for a message, each with the positions of the states that have one.
@@ -114,6 +151,7 @@ class Judge(EventHandler):
         self.audit.start = self._time = time
         if state:
             self.engine.state = self.engine.state_with(state)
+            self._unheard -= {element if isinstance(element, sct.Plant) else element.eContainer() for element in state}
         self._times.start()
         with self._times:
             self._control.settle()
@@ -125,6 +163,8 @@ class Judge(EventHandler):
     def advance(self, time: int) -> None:
         """Let time pass; a time before the latest one counts as that. Timers expire at their times."""
         port, loop, start = self._recorder, self._event_loop, self.audit.start or 0
+        while self._waiting and self._waiting[0].time + self._tolerance < time:
+            self.decide()
         now = _START + (time - start) / SECOND
         while (wait := loop.run_pending()) is not None and port.time + wait <= now:
             port.time = max(port.time + wait, math.nextafter(port.time, math.inf))
@@ -158,16 +198,24 @@ class Judge(EventHandler):
 
     # Findings
 
-    def _find(
+    def _finding(
         self, kind: Kind, event: sct.Event, reason: str, because: Sequence[str], since: int | None = None
-    ) -> None:
+    ) -> Finding:
         plant = plant_of(event)
         name = plant.origin or plant.name
+        unheard = sorted({self._plants[plant] for plant in self._unheard if plant in self._deciding(event)})
         components = self._reports.components()
-        finding = Finding(kind, self._names[event], name, self.topic, reason, because, components, since)
-        finding = self.audit.add(finding, self._time)
+        return Finding(
+            kind, self._names[event], name, self.topic, reason, because, components, since=since, unheard=unheard
+        )
+
+    def _add(self, finding: Finding, time: int) -> None:
+        finding = self.audit.add(finding, time)
         if self._watch is not None:
             self._watch(finding.event, finding)
+
+    def _find(self, kind: Kind, event: sct.Event, reason: str, because: Sequence[str]) -> None:
+        self._add(self._finding(kind, event, reason, because), self._time)
 
     def unexpected(self, event: sct.Event, why: str) -> None:
         """Add a finding of an event that the model does not expect."""
@@ -175,59 +223,122 @@ class Judge(EventHandler):
 
     # Commands
 
-    def published(self, publisher: rosgraph.Publisher, message: Message) -> None:
-        """Judge a message on a topic of commands."""
-        sendings = list(publisher.sendings)
-        if len(sendings) == 1:
-            self.command(sendings[0], message)
-            return
-        having = [sending for sending in sendings if self._shared.has_data(sending, message)]
-        if not having:
-            having = [sending for sending in sendings if not self._shared.is_constant(sending)]
-        if having:
-            permitted = (sending for sending in having if self._is_permitted(sending, message))
-            self.command(next(permitted, having[0]), message)
-            return
-        names = " and ".join(f"`{sending.name}`" for sending in sendings)
-        forbidden = (sending for sending in sendings if not self._is_permitted(sending, message))
-        chosen = next(forbidden, sendings[0])
-        self.unexpected(chosen.event, f"{names} never have this data")
-        self.command(chosen, message)
+    def command(
+        self,
+        sendings: Sequence[rosgraph.Sending],
+        message: Message,
+        done: Callable[[bool], None] | None = None,
+        *,
+        is_known: bool = True,
+    ) -> None:
+        """Judge a command with its data. It is one of `sendings`, which share a topic.
 
-    def _is_permitted(self, sending: rosgraph.Sending, message: Message) -> bool:
-        name = self._names[sending.event]
-        return self.engine.enabled(name) and not self._set_inputs(sending, message) and self.engine.permits_inputs(name)
-
-    def command(self, sending: rosgraph.Sending, message: Message, *, is_known: bool = True) -> bool:
-        """Judge a command with its data; return whether the model has a transition for it.
-
-        Without `is_known`, the recording does not have the data: the command is a finding if no data permits it.
+        Without `is_known`, the recording does not have the data: the command is a finding if no data permits it. `done`
+        is called, perhaps later, with whether the model has a transition for it.
         """
-        event = sending.event
-        name = self._names[event]
         self.audit.commands += 1
-        with self._times:
-            fault = self._set_inputs(sending, message) if is_known else ""
-            is_permitted = self.engine.enabled(name) and (not is_known or self.engine.permits_inputs(name))
-            if fault:
-                self._find(Kind.FORBIDDEN, event, "data", [fault])
-            elif not is_permitted:
-                since = self._permitted_before(name, with_data=is_known)
-                if since is None or since > self._tolerance:
-                    reason = self._blocking.reason(event)
-                    self._find(Kind.FORBIDDEN, event, reason.kind, reason.because, since)
-            elif is_known and (beyond := self._beyond_limits(sending, message)):
-                self._find(Kind.FORBIDDEN, event, "limit", beyond)
+        command = _Command(sendings, message, is_known, self.topic, self._time, done)
+        if not self._waiting and (sending := self._permitted(command)) is not None:
+            self._happen(command, sending)
+            return
+        self._waiting.append(command)
+        with self._as_of(command):
+            self._forbid(command)
+        if not self._tolerance or command.is_accepted:
+            self.decide()
+
+    def decide(self) -> None:
+        """Decide on all commands that wait: no later message can permit them."""
+        self._retry()
+        while self._waiting:
+            command = self._waiting.popleft()
+            sending = self._permitted(command) or command.chosen
+            if command.is_accepted:
+                self.audit.tolerated += 1
             else:
-                self.audit.clear(name)
-            happens = self._has_transition(name, with_data=is_known and not fault)
+                for finding in command.findings:
+                    self._add(finding, command.time)
+            self._happen(command, sending, is_found=not command.is_accepted)
+            self._retry()
+
+    def _retry(self) -> None:
+        """Let the commands that wait happen, in their order, as far as they are permitted by now."""
+        while self._waiting and (sending := self._permitted(self._waiting[0])) is not None:
+            self.audit.tolerated += 1
+            self._happen(self._waiting.popleft(), sending)
+
+    def _candidates(self, command: _Command) -> list[rosgraph.Sending]:
+        """Return the commands of a topic that can have the data of a message."""
+        sendings = list(command.sendings)
+        if len(sendings) == 1:
+            return sendings
+        having = [sending for sending in sendings if self._shared.has_data(sending, command.message)]
+        return having or [sending for sending in sendings if not self._shared.is_constant(sending)]
+
+    def _permitted(self, command: _Command) -> rosgraph.Sending | None:
+        """Return the command that is permitted now, of those that the message can be."""
+        return next((sending for sending in self._candidates(command) if self._is_permitted(sending, command)), None)
+
+    def _is_permitted(self, sending: rosgraph.Sending, command: _Command) -> bool:
+        name = self._names[sending.event]
+        if not self.engine.enabled(name):
+            return False
+        return not command.is_known or (
+            not self._set_inputs(sending, command.message) and self.engine.permits_inputs(name)
+        )
+
+    def _forbid(self, command: _Command) -> None:
+        """Set the findings of a command that is not permitted now, and whether it was permitted shortly before."""
+        candidates = self._candidates(command)
+        if not candidates:
+            command.chosen = next(
+                (sending for sending in command.sendings if not self._is_permitted(sending, command)),
+                command.sendings[0],
+            )
+            names = " and ".join(f"`{sending.name}`" for sending in command.sendings)
+            why = f"{names} never have this data"
+            command.findings.append(self._finding(Kind.UNEXPECTED, command.chosen.event, "state", [why]))
+            if self._is_permitted(command.chosen, command):
+                return
+        else:
+            command.chosen = candidates[0]
+        event, is_known = command.chosen.event, command.is_known
+        fault = self._set_inputs(command.chosen, command.message) if is_known else ""
+        if fault:
+            command.findings.append(self._finding(Kind.FORBIDDEN, event, "data", [fault]))
+            return
+        since = self._permitted_before(self._names[event], with_data=is_known)
+        command.is_accepted = bool(candidates) and since is not None and since <= self._tolerance
+        reason = self._blocking.reason(event)
+        command.findings.append(self._finding(Kind.FORBIDDEN, event, reason.kind, reason.because, since))
+
+    @contextmanager
+    def _as_of(self, command: _Command) -> Iterator[None]:
+        """Use the topic of a command."""
+        topic, self.topic = self.topic, command.topic
+        yield
+        self.topic = topic
+
+    def _happen(self, command: _Command, sending: rosgraph.Sending, *, is_found: bool = False) -> None:
+        """Perform a command that the robot has got, as far as the model has a transition for it."""
+        event, message, name = sending.event, command.message, self._names[sending.event]
+        with self._as_of(command), self._times:
+            is_readable = command.is_known and not self._set_inputs(sending, message)
+            if not is_found:
+                beyond = self._beyond_limits(sending, message) if command.is_known else []
+                if beyond:
+                    self._add(self._finding(Kind.FORBIDDEN, event, "limit", beyond), command.time)
+                else:
+                    self.audit.clear(name)
+            happens = self._has_transition(name, with_data=is_readable)
             if happens:
                 self._sent = message
                 self._control.force(name)
                 self._sent = None
                 self._control.settle()
         self._remember()
-        return happens
+        if command.done is not None:
+            command.done(happens)
 
     def _has_transition(self, name: str, *, with_data: bool) -> bool:
         """Return whether the plants have a transition for a command."""
@@ -283,6 +394,7 @@ class Judge(EventHandler):
             yield
             self._control.settle()
         self._remember()
+        self._retry()
 
     def _perform(
         self,
@@ -345,11 +457,20 @@ class Judge(EventHandler):
 
     # Hooks of the event handler
 
+    def _changes(self, event: sct.Event) -> bool:
+        try:
+            return super()._changes(event)
+        except AttributeError:  # the recording does not have the data of the command
+            return True
+
     def _follow_up(self) -> None:
         self._control.settle()
         self._remember()
+        self._retry()
 
     def _after(self, name: str) -> None:
+        if self._unheard:
+            self._unheard.difference_update(self._involved.get(name, ()))
         if self._watch is not None:
             self._watch(name, None)
 

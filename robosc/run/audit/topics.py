@@ -86,7 +86,7 @@ class Sent(Part):
         return {self.name: (_type_of(self._publisher.interface), self._command)}
 
     def _command(self, message: Message) -> None:
-        self.judge.published(self._publisher, message)
+        self.judge.command(list(self._publisher.sendings), message)
 
     def unseen(self, ros: int) -> Iterator[tuple[str, str]]:  # noqa: ARG002
         """Yield the topic if it has no message."""
@@ -128,10 +128,15 @@ class Service(Part):
             return  # client and server report the same
         if is_request:
             request = message.request[0] if len(message.request) else None
-            if self.judge.command(self._client.request, request, is_known=request is not None):
-                self._open = call
-                self._deadline = self.judge.call_later(self._timeout, lambda: self._expire(call))
-        elif call in self._late:
+            self.judge.command(
+                [self._client.request],
+                request,
+                lambda happens: self._begin(call) if happens else None,
+                is_known=request is not None,
+            )
+            return
+        self.judge.decide()
+        if call in self._late:
             self._late.remove(call)
         else:
             self._end()
@@ -139,6 +144,10 @@ class Service(Part):
             if response is None:
                 response = self.port.create(self._client.interface, Section.RESPONSE)
             self.judge.respond(self._client, response)
+
+    def _begin(self, call: tuple[object, ...]) -> None:
+        self._open = call
+        self._deadline = self.judge.call_later(self._timeout, lambda: self._expire(call))
 
     def _end(self) -> None:
         self._open = None
@@ -169,11 +178,16 @@ class _Goals(Part):
             return
         _is_new(self._ended, goal)
         self._ended[goal] = False
-        if self.judge.command(self._client.request, request, is_known=request is not None):
-            self._present = goal
+
+        def done(happens: bool) -> None:
+            if happens:
+                self._present = goal
+
+        self.judge.command([self._client.request], request, done, is_known=request is not None)
 
     def _finish(self, goal: bytes | str, outcome: GoalOutcome | None, result: Message) -> None:
         """Note the end of a goal; None for a goal that was rejected."""
+        self.judge.decide()
         if self._ended.get(goal):
             return
         _is_new(self._ended, goal)
@@ -203,12 +217,14 @@ class _Goals(Part):
     def _feed_back(self, goal: bytes | str, feedback: Message) -> None:
         if goal not in self._ended:
             self._begin(goal, None)
+        self.judge.decide()
         if goal == self._present:
             self.judge.feed_back(self._client, feedback)
         elif self._ended[goal]:
             self.judge.unexpected(self._client.feedback.event, "the goal has ended")
 
     def _cancel(self) -> None:
+        self.judge.decide()
         self.judge.cancel(self._client)
 
 
