@@ -24,6 +24,14 @@ class RecordingError(Exception):
     """A recording that cannot be read; the message gives the reason."""
 
 
+class _Place(NamedTuple):
+    """Place of a message in a bag of ROS 1."""
+
+    time: int
+    chunk_pos: int
+    offset: int
+
+
 class RecordedText(NamedTuple):
     """A message of `std_msgs/String`, and its topic."""
 
@@ -94,6 +102,8 @@ class Recording:
         ros = 1 if path.suffix == ".bag" else 2
         reader: Any = rosbag1.Reader(path) if ros == 1 else rosbag2.Reader(path)
         with reader:
+            if ros == 1:  # rosbags orders messages of one time by their connections
+                reader.indexes = {number: [_Place(*entry) for entry in index] for number, index in reader.indexes.items()}
             if reader.message_count:
                 self.start = reader.start_time
             channels = {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
@@ -60,6 +61,8 @@ def lines(audit: Audit, most: int = MOST) -> Iterator[str]:
         number = sum(len(finding.times) for finding in audit.findings if finding.kind is kind)
         many = "violations of assumptions" if kind is Kind.ASSUMPTION else f"{one}s"
         yield f"{number:,} {one if number == 1 else many}"
+    if audit.tolerated:
+        yield f"{_count(audit.tolerated, 'command')} permitted only shortly before or after"
     if audit.ignored:
         yield "Ignored in these states, which is no finding:"
         yield from (f"  {event} in {state}: {count:,} times" for (event, state), count in audit.ignored.items())
@@ -79,13 +82,15 @@ def _finding(audit: Audit, finding: Finding) -> Iterator[str]:
     if finding.since is not None:
         since = f"; permitted until {finding.since / MILLISECOND:.3f} ms before"
     if states or since:
-        yield f"{'':14}in {states or 'the initial state'}{since}"
+        yield f"{'':14}in {states or 'the only state'}{since}"
+    if finding.unheard:
+        yield f"{'':14}nothing was heard yet of {', '.join(finding.unheard)}: its state is the one at the start"
 
 
 def _state(name: str, part: object) -> str:
     assert isinstance(part, dict)
     variables: Mapping[str, object] = part["variables"]
-    values = ", ".join(f"{variable} = {value}" for variable, value in variables.items())
+    values = ", ".join(f"{variable} = {json.dumps(value, ensure_ascii=False)}" for variable, value in variables.items())
     return f"{name}.{part['state']}{f' ({values})' if values else ''}"
 
 

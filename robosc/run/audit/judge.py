@@ -37,8 +37,6 @@ if TYPE_CHECKING:
     #: Called after each event with its name, and for each finding with the name of its event and the finding.
     Watch = Callable[[str, Finding | None], None]
 
-#: The clock of the judge starts at this time in seconds: a clock at 0 has not begun.
-_START = 1.0
 #: Nanoseconds for which past states are remembered.
 _MEMORY = SECOND
 
@@ -78,7 +76,6 @@ class Judge(EventHandler):
         tolerance: int = 0,
         watch: Watch | None = None,
     ) -> None:
-        port.time = _START
         super().__init__(graph, settings, port, EventLoop(port.now), LoopSettings(resolution_ms=RESOLUTION_MS))
         self.audit = Audit(graph.name)
         self.engine = self._control.engine
@@ -91,7 +88,7 @@ class Judge(EventHandler):
         self._names = {event: name for name, event in self._events.items()}
         #: Topic of the present message.
         self.topic = ""
-        self._time = 0
+        self._time = self._offset = 0
         #: Past states, with the times at which they began, the latest last.
         self._past: deque[tuple[int, State]] = deque()
         self._transitions = self._places_of_transitions()
@@ -149,6 +146,8 @@ class Judge(EventHandler):
     def begin(self, time: int, state: Mapping[sct.Plant | sct.DiscreteVariable, Any] | None = None) -> None:
         """Start at a time in nanoseconds, in the initial state, or in the state that differs in these values."""
         self.audit.start = self._time = time
+        self._offset = 0 if time >= SECOND else SECOND  # a clock at 0 has not begun
+        self._recorder.time = (time + self._offset) / SECOND
         if state:
             self.engine.state = self.engine.state_with(state)
             self._unheard -= {element if isinstance(element, sct.Plant) else element.eContainer() for element in state}
@@ -162,13 +161,13 @@ class Judge(EventHandler):
 
     def advance(self, time: int) -> None:
         """Let time pass; a time before the latest one counts as that. Timers expire at their times."""
-        port, loop, start = self._recorder, self._event_loop, self.audit.start or 0
+        port, loop = self._recorder, self._event_loop
         while self._waiting and self._waiting[0].time + self._tolerance < time:
             self.decide()
-        now = _START + (time - start) / SECOND
+        now = (time + self._offset) / SECOND
         while (wait := loop.run_pending()) is not None and port.time + wait <= now:
             port.time = max(port.time + wait, math.nextafter(port.time, math.inf))
-            self._time = max(self._time, start + round((port.time - _START) * SECOND))
+            self._time = max(self._time, min(time, round(port.time * SECOND) - self._offset))
         port.time = max(port.time, now)
         self._time = max(self._time, time)
         self.audit.end = self._time
@@ -308,7 +307,8 @@ class Judge(EventHandler):
             command.findings.append(self._finding(Kind.FORBIDDEN, event, "data", [fault]))
             return
         since = self._permitted_before(self._names[event], with_data=is_known)
-        command.is_accepted = bool(candidates) and since is not None and since <= self._tolerance
+        is_close = self._tolerance > 0 and since is not None and since <= self._tolerance
+        command.is_accepted = bool(candidates) and is_close
         reason = self._blocking.reason(event)
         command.findings.append(self._finding(Kind.FORBIDDEN, event, reason.kind, reason.because, since))
 
@@ -331,11 +331,14 @@ class Judge(EventHandler):
                 else:
                     self.audit.clear(name)
             happens = self._has_transition(name, with_data=is_readable)
+            before = self.engine.state.cells
             if happens:
                 self._sent = message
                 self._control.force(name)
                 self._sent = None
                 self._control.settle()
+        if self.engine.state.cells != before:
+            self._past.clear()  # the controller knows its own commands
         self._remember()
         if command.done is not None:
             command.done(happens)
