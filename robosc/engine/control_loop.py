@@ -203,13 +203,14 @@ class ControlLoop:
         self._settle()
         self._serve(self._queued(), self.settings.events_per_tick or len(self._queued()))
 
-    def settle(self) -> None:
-        """Settle, then run each enabled cancel once.
+    def settle(self, *, cancels: bool = True) -> None:
+        """Settle, then run each enabled cancel once if `cancels`.
 
         A supervisory layer, which has no ticks, does this after an event.
         """
         self._settle()
-        self._serve(self._cancels, len(self._cancels))
+        if cancels:
+            self._serve(self._cancels, len(self._cancels))
 
     def _queued(self) -> list[str]:
         return [*self._cancels, *self._triggers]

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from robosc.run.audit.findings import Audit, Finding
 
 #: Start of the sentence for the reasons that the supervisor does not give.
-_FORBIDDEN = {"data": "cannot be judged", "limit": "is beyond its limit"}
+_FORBIDDEN = {"data": "cannot be judged", "limit": "is beyond its limit", "cancel": "goes on, and should be canceled"}
 _UNEXPECTED = {
     "state": "is not expected",
     "data": "cannot be read",

@@ -74,14 +74,15 @@ class Audit:
     ignored: dict[tuple[str, str], int] = field(default_factory=dict)
     unseen: dict[str, str] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
-    _last: dict[str, Finding] = field(default_factory=dict)
+    _last: dict[str, dict[Kind, Finding]] = field(default_factory=dict)
 
     def add(self, finding: Finding, time: int) -> Finding:
         """Add a finding of a time. A repetition of the last finding of its event is added to that."""
-        last = self._last.get(finding.event)
+        known = self._last.setdefault(finding.event, {})
+        last = known.get(finding.kind)
         if last is None or last.key != finding.key:
             self.findings.append(finding)
-            self._last[finding.event] = last = finding
+            known[finding.kind] = last = finding
         last.times.append(time)
         return last
 

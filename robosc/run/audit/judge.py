@@ -6,6 +6,7 @@ import math
 from collections import deque
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from robosc.engine import Blocked
@@ -54,6 +55,7 @@ class _Command:
     topic: str
     time: int
     done: Callable[[bool], None] | None
+    wire_types: Callable[[Message], Mapping[str, str]]
     chosen: Any = None
     findings: list[Finding] = field(default_factory=list)
     is_accepted: bool = False
@@ -111,6 +113,9 @@ class Judge(EventHandler):
             event_name(event): [plant for plant in taking_part if plant in self._plants]
             for event, taking_part in edges_by_event(graph.model.plants).items()
         }
+        #: Goals that the supervisor would cancel, with the time since when.
+        self._due: dict[rosgraph.ActionClient, int] = {}
+        self._patience = settings.seconds("action_timeout_ms") if graph.actionClients else 0.0
         self._decisive: dict[sct.Event, set[sct.Plant]] = {}
         #: Commands that are not permitted yet, in the order of their times.
         self._waiting: deque[_Command] = deque()
@@ -153,7 +158,7 @@ class Judge(EventHandler):
             self._unheard -= {element if isinstance(element, sct.Plant) else element.eContainer() for element in state}
         self._times.start()
         with self._times:
-            self._control.settle()
+            self._control.settle(cancels=False)
         self._remember()
 
     def start(self) -> None:
@@ -177,14 +182,27 @@ class Judge(EventHandler):
         return self._event_loop.call_later(seconds, action)
 
     def _remember(self) -> None:
-        """Remember the present state if it is new."""
+        """Remember the present state if it is new, and the goals that the supervisor would cancel now."""
         state, past = self.engine.state, self._past
         if past and past[-1][1].cells is state.cells:
             return
+        for client in self._graph.actionClients:
+            if not self._control.enabled(self._names[client.cancel]):
+                self._due.pop(client, None)
+            elif client not in self._due:
+                self._due[client] = self._time
+                self.call_later(self._patience, partial(self._miss_cancel, client, self._time))
         past.append((self._time, state))
         limit = self._time - max(_MEMORY, self._tolerance)
         while len(past) > 1 and past[1][0] <= limit:
             past.popleft()
+
+    def _miss_cancel(self, client: rosgraph.ActionClient, since: int) -> None:
+        """Add a finding for a goal that has gone on although the supervisor would have canceled it."""
+        if self._due.get(client) == since:
+            failing = self.engine.failing_requirements(self._names[client.request.event])
+            texts = [requirement.text for requirement in failing if requirement.text]
+            self._add(self._finding(Kind.FORBIDDEN, client.cancel, "cancel", texts), since)
 
     def _permitted_before(self, name: str, *, with_data: bool) -> int | None:
         """Return the nanoseconds since a command was last permitted; None if that is unknown."""
@@ -236,7 +254,8 @@ class Judge(EventHandler):
         is called, perhaps later, with whether the model has a transition for it.
         """
         self.audit.commands += 1
-        command = _Command(sendings, message, is_known, self.topic, self._time, done)
+        types = self._recorder.recorded_types
+        command = _Command(sendings, message, is_known, self.topic, self._time, done, types)
         if not self._waiting and (sending := self._permitted(command)) is not None:
             self._happen(command, sending)
             return
@@ -276,6 +295,7 @@ class Judge(EventHandler):
 
     def _permitted(self, command: _Command) -> rosgraph.Sending | None:
         """Return the command that is permitted now, of those that the message can be."""
+        self._recorder.recorded_types = command.wire_types
         return next((sending for sending in self._candidates(command) if self._is_permitted(sending, command)), None)
 
     def _is_permitted(self, sending: rosgraph.Sending, command: _Command) -> bool:
@@ -321,11 +341,12 @@ class Judge(EventHandler):
 
     def _happen(self, command: _Command, sending: rosgraph.Sending, *, is_found: bool = False) -> None:
         """Perform a command that the robot has got, as far as the model has a transition for it."""
+        self._recorder.recorded_types = command.wire_types
         event, message, name = sending.event, command.message, self._names[sending.event]
         with self._as_of(command), self._times:
             is_readable = command.is_known and not self._set_inputs(sending, message)
             if not is_found:
-                beyond = self._beyond_limits(sending, message) if command.is_known else []
+                beyond = self._beyond_limits(sending, message) if is_readable else []
                 if beyond:
                     self._add(self._finding(Kind.FORBIDDEN, event, "limit", beyond), command.time)
                 else:
@@ -336,7 +357,7 @@ class Judge(EventHandler):
                 self._sent = message
                 self._control.force(name)
                 self._sent = None
-                self._control.settle()
+                self._control.settle(cancels=False)
         if self.engine.state.cells != before:
             self._past.clear()  # the controller knows its own commands
         self._remember()
@@ -351,9 +372,10 @@ class Judge(EventHandler):
 
     def _set_inputs(self, sending: rosgraph.Sending, message: Message) -> str:
         """Set the inputs of a command; return why they can't be read, empty if they can."""
-        if not sending.inputs:
+        if not sending.inputs and not sending.limits:
             return ""
         try:
+            self._composer.limited_fields(sending, message)  # its doubles are finite
             self.engine.set_inputs(self._names[sending.event], self._composer.inputs(sending, message))
         except UNSENDABLE as error:
             return why_unsendable(error)
@@ -363,12 +385,8 @@ class Judge(EventHandler):
         """Return the fields of a command that its limits would change, in words."""
         if not sending.limits:
             return []
-        try:
-            limited = self._composer.limited_fields(sending, message)
-        except UNSENDABLE as error:
-            return [why_unsendable(error)]
         beyond = []
-        for path, value in limited.items():
+        for path, value in self._composer.limited_fields(sending, message).items():
             own = message
             for step in path:
                 own = getattr(own, step)
@@ -378,7 +396,7 @@ class Judge(EventHandler):
         return beyond
 
     def cancel(self, client: rosgraph.ActionClient) -> None:
-        """Note that the robot cancels a goal: a cancel of the model if the supervisor permits it now."""
+        """Note that a goal is being canceled: by the supervisor's cancel if it permits one now, else by someone else."""
         with self._batch():
             self._control.perform(self._names[client.cancel])
 
@@ -395,7 +413,7 @@ class Judge(EventHandler):
     def _batch(self) -> Iterator[None]:
         with self._times:
             yield
-            self._control.settle()
+            self._control.settle(cancels=False)
         self._remember()
         self._retry()
 
@@ -467,7 +485,7 @@ class Judge(EventHandler):
             return True
 
     def _follow_up(self) -> None:
-        self._control.settle()
+        self._control.settle(cancels=False)
         self._remember()
         self._retry()
 

@@ -37,7 +37,8 @@ STOP = "requirement step needs EmergencyStop.in_service"
 
 @cache
 def graph_of(text_or_path: str | Path) -> rosgraph.RosGraph:
-    robot = robosc.load(text_or_path)
+    is_text = isinstance(text_or_path, str)
+    robot = robosc.load(text=text_or_path) if is_text else robosc.load(text_or_path)
     robosc.synthesize(robosc.to_sct(robot))
     return robosc.to_rosgraph(robot)
 
