@@ -76,6 +76,11 @@ class Audit:
     notes: list[str] = field(default_factory=list)
     _last: dict[str, dict[Kind, Finding]] = field(default_factory=dict)
 
+    def repeats(self, finding: Finding) -> bool:
+        """Return whether a finding is a repetition of the last one of its event."""
+        last = self._last.get(finding.event, {}).get(finding.kind)
+        return last is not None and last.key == finding.key
+
     def add(self, finding: Finding, time: int) -> Finding:
         """Add a finding of a time. A repetition of the last finding of its event is added to that."""
         known = self._last.setdefault(finding.event, {})

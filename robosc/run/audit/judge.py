@@ -88,6 +88,7 @@ class Judge(EventHandler):
         self._composer = Composer(port, self._data)
         self._shared = SharedTopics(port, self._data)
         self._names = {event: name for name, event in self._events.items()}
+        self._origins = {event: plant_of(event).origin or plant_of(event).name for event in self._names}
         #: Topic of the present message.
         self.topic = ""
         self._time = self._offset = 0
@@ -115,7 +116,8 @@ class Judge(EventHandler):
         }
         #: Goals that the supervisor would cancel, with the time since when.
         self._due: dict[rosgraph.ActionClient, int] = {}
-        self._patience = settings.seconds("action_timeout_ms") if graph.actionClients else 0.0
+        self._actions = list(graph.actionClients)
+        self._patience = settings.seconds("action_timeout_ms") if self._actions else 0.0
         self._decisive: dict[sct.Event, set[sct.Plant]] = {}
         #: Commands that are not permitted yet, in the order of their times.
         self._waiting: deque[_Command] = deque()
@@ -184,9 +186,9 @@ class Judge(EventHandler):
     def _remember(self) -> None:
         """Remember the present state if it is new, and the goals that the supervisor would cancel now."""
         state, past = self.engine.state, self._past
-        if past and past[-1][1].cells is state.cells:
+        if past and past[-1][1].cells == state.cells:
             return
-        for client in self._graph.actionClients:
+        for client in self._actions:
             if not self._control.enabled(self._names[client.cancel]):
                 self._due.pop(client, None)
             elif client not in self._due:
@@ -218,13 +220,11 @@ class Judge(EventHandler):
     def _finding(
         self, kind: Kind, event: sct.Event, reason: str, because: Sequence[str], since: int | None = None
     ) -> Finding:
-        plant = plant_of(event)
-        name = plant.origin or plant.name
-        unheard = sorted({self._plants[plant] for plant in self._unheard if plant in self._deciding(event)})
-        components = self._reports.components()
-        return Finding(
-            kind, self._names[event], name, self.topic, reason, because, components, since=since, unheard=unheard
-        )
+        finding = Finding(kind, self._names[event], self._origins[event], self.topic, reason, because, {}, since)
+        if not self.audit.repeats(finding):
+            finding.components = self._reports.components()
+            finding.unheard = sorted({self._plants[plant] for plant in self._unheard & self._deciding(event)})
+        return finding
 
     def _add(self, finding: Finding, time: int) -> None:
         finding = self.audit.add(finding, time)
