@@ -53,7 +53,8 @@ def main() -> None:
         )
         wall = time.monotonic() - began
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    print(f"{count:,} messages in {path.suffix or 'a folder'}: {wall:.1f} s, processor {used.ru_utime + used.ru_stime:.1f} s,")
+    processor = used.ru_utime + used.ru_stime
+    print(f"{count:,} messages in {path.suffix or 'a folder'}: {wall:.1f} s, processor {processor:.1f} s,")
     print(f"{used.ru_maxrss >> 10} MB, {len(done.stdout):,} bytes of JSON, exit status {done.returncode}")
 
 
@@ -76,7 +77,9 @@ def write(path: Path, form: str, seconds: int, *, forbidden: bool) -> int:
     if form == "mcap":
         write_mcap(path, types, kinds, entries)
         return len(entries)
-    writer: Any = Ros1Writer(path) if form == "bag" else Ros2Writer(path, version=9, storage_plugin=StoragePlugin.SQLITE3)
+    writer: Any = (
+        Ros1Writer(path) if form == "bag" else Ros2Writer(path, version=9, storage_plugin=StoragePlugin.SQLITE3)
+    )
     with writer:
         connections = {topic: writer.add_connection(topic, kind, typestore=types) for topic, kind in kinds.items()}
         for topic, moment, content in entries:
@@ -104,7 +107,11 @@ def sample(types: Any, topic: str) -> Any:
     if topic == "/scan":
         time_type, header_type = kinds["builtin_interfaces/msg/Time"], kinds["std_msgs/msg/Header"]
         stamp = time_type(sec=0, nanosec=0)
-        header = header_type(seq=0, stamp=stamp, frame_id="") if "seq" in header_type.__annotations__ else header_type(stamp=stamp, frame_id="")
+        header = (
+            header_type(seq=0, stamp=stamp, frame_id="")
+            if "seq" in header_type.__annotations__
+            else header_type(stamp=stamp, frame_id="")
+        )
         rays = np.full(360, 2.0, dtype=np.float32)
         return kinds["sensor_msgs/msg/LaserScan"](header, 0.0, 6.28, 0.0175, 0.0, 0.1, 0.1, 10.0, rays, rays)
     if topic == "/simple_movement":

@@ -103,7 +103,9 @@ class Recording:
         reader: Any = rosbag1.Reader(path) if ros == 1 else rosbag2.Reader(path)
         with reader:
             if ros == 1:  # rosbags orders messages of one time by their connections
-                reader.indexes = {number: [_Place(*entry) for entry in index] for number, index in reader.indexes.items()}
+                reader.indexes = {
+                    number: [_Place(*entry) for entry in index] for number, index in reader.indexes.items()
+                }
             if reader.message_count:
                 self.start = reader.start_time
             channels = {

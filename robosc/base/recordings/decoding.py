@@ -147,7 +147,10 @@ def _parsed(definition: str, form: str, name: str) -> dict[str, Any]:
     types: dict[str, Any] = {}
     for part in parts:
         types |= get_types_from_idl(part.partition("\n")[2])
-    return {flat(name): (constants, [(field, _flat(kind)) for field, kind in fields]) for name, (constants, fields) in types.items()}
+    return {
+        flat(name): (constants, [(field, _flat(kind)) for field, kind in fields])
+        for name, (constants, fields) in types.items()
+    }
 
 
 def _flat(description: Any) -> Any:
@@ -235,7 +238,7 @@ def _require_finite(types: Mapping[str, Any]) -> None:
             return has_bytes(details, above)
         if not has_bytes_of(details[0], above):
             raise DecodingError("an array has elements without content")
-        return kind == Nodetype.SEQUENCE or details[1] > 0
+        return bool(kind == Nodetype.SEQUENCE or details[1] > 0)
 
     for name in types:
         has_bytes(name, ())

@@ -43,7 +43,7 @@ class LogJudge:
     The log has the silent events and the timeouts of its node: they happen as it says.
     """
 
-    def __init__(
+    def __init__(  # noqa: PLR0913, PLR0917  # the parts of a robot, and the options
         self,
         model: sct.SupervisoryControlModel,
         graph: rosgraph.RosGraph | None,

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.engine import Blocked
 from robosc.engine import Settings as LoopSettings
-from robosc.model import engine, rosgraph, sct
 from robosc.model import expression as ex
+from robosc.model import rosgraph, sct
 from robosc.model.semantics.edges import edges_by_event, origin
-from robosc.model.semantics.messages import path_of, receptions, sent_messages
+from robosc.model.semantics.messages import path_of, receptions
 from robosc.model.semantics.operators import UnreadableError
 from robosc.model.semantics.roles import assumption_text, event_name, plant_of
 from robosc.run.audit.findings import SECOND, Audit, Finding, Kind
@@ -22,7 +22,7 @@ from robosc.run.audit.shared_topics import SharedTopics
 from robosc.run.runtime.core.composer import Composer
 from robosc.run.runtime.core.event_handler import EventHandler
 from robosc.run.runtime.core.event_loop import EventLoop
-from robosc.run.runtime.core.node_data import UNSENDABLE, within_range, why_unsendable
+from robosc.run.runtime.core.node_data import UNSENDABLE, why_unsendable, within_range
 from robosc.run.runtime.core.times import RESOLUTION_MS
 
 if TYPE_CHECKING:
@@ -396,7 +396,7 @@ class Judge(EventHandler):
         return beyond
 
     def cancel(self, client: rosgraph.ActionClient) -> None:
-        """Note that a goal is being canceled: by the supervisor's cancel if it permits one now, else by someone else."""
+        """Note that a goal is being canceled: by the supervisor if it permits that now, else by others."""
         with self._batch():
             self._control.perform(self._names[client.cancel])
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from robosc.run.audit.judge import Judge
     from robosc.run.audit.port import RecordingPort
     from robosc.run.runtime.core.event_loop import Timer
-    from robosc.run.runtime.core.port import Message
+    from robosc.run.runtime.core.port import Message, Server
 
 #: Maximum number of calls and goals that are remembered.
 _MOST = 1000
@@ -118,7 +118,10 @@ class Service(Part):
         if ros == 1:
             yield self.name, "bags of ROS 1 have no calls of services"
         elif not self.seen:
-            yield self.name, f"its calls are in a recording only with service introspection, on {self.name}/_service_event"
+            yield (
+                self.name,
+                f"its calls are in a recording only with service introspection, on {self.name}/_service_event",
+            )
 
     def _event(self, message: Message) -> None:
         info = message.info
@@ -365,12 +368,11 @@ class Topics:
             actions = [kind(judge, port, resolve(client.identifier), client) for client in graph.actionClients]
             self._by_version[ros] = [*both, *actions]
         self._handlers = {
-            ros: {
-                topic: (part, *described) for part in parts for topic, described in part.topics().items()
-            }
+            ros: {topic: (part, *described) for part in parts for topic, described in part.topics().items()}
             for ros, parts in self._by_version.items()
         }
-        self._served = [resolve(served.identifier) for served in (*graph.serviceServers, *graph.actionServers)]
+        servers: list[Server] = [*graph.serviceServers, *graph.actionServers]
+        self._served = [resolve(server.identifier) for server in servers]
         self._other_types: dict[str, str] = {}
         #: Number of messages of a topic that cannot be decoded, with the first reason.
         self._broken: dict[str, tuple[int, str]] = {}

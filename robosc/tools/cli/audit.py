@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field
+from functools import wraps
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from robosc.base.recordings import RecordingError
 from robosc.run.audit.as_text import lines
+from robosc.run.audit.findings import MILLISECOND
 from robosc.tools.cli import ERRORS_FOUND, CallError, interruption, put, say
 from robosc.tools.cli.options import Paths, configuration, model, paths, synthesizer
 from robosc.tools.cli.parameters import parameters, set_parameters
@@ -26,6 +29,10 @@ if TYPE_CHECKING:
     from robosc.run.audit import LogJudge, RecordingJudge
     from robosc.run.audit.judge import Watch
 
+#: A recorder and a controller get the messages of two topics in different orders: on a busy computer, some tens of
+#: milliseconds apart.
+TOLERANCE_MS = 50
+
 
 def _remappings(_context: click.Context, _parameter: click.Parameter, texts: Sequence[str]) -> dict[str, str]:
     names = {}
@@ -37,36 +44,50 @@ def _remappings(_context: click.Context, _parameter: click.Parameter, texts: Seq
     return names
 
 
+@dataclass(frozen=True)
+class Judgement:
+    """Options of a judgement: the state at the start, the tolerance in milliseconds, and the names of the recording."""
+
+    state: str | None = None
+    tolerance: float = TOLERANCE_MS
+    namespace: str = ""
+    remappings: Mapping[str, str] = field(default_factory=dict)
+
+
 def judging(command: Callable[..., None]) -> Callable[..., None]:
-    """Add the options of a judgement to a command: `state`, `tolerance`, `namespace`, `remappings`."""
-    for option in (
-        click.option(
-            "--remap",
-            "-r",
-            "remappings",
-            multiple=True,
-            metavar="FROM:=TO",
-            callback=_remappings,
-            help="The recording has the topic, service or action TO in place of FROM; repeatable.",
-        ),
-        click.option("--namespace", default="", metavar="NS", help="The namespace of relative names in the recording."),
-        click.option(
-            "--tolerance",
-            type=click.FloatRange(min=0, max=60_000),
-            default=0,
-            show_default=True,
-            metavar="MS",
-            help="Accept a command that was permitted at most this many milliseconds before.",
-        ),
-        click.option(
-            "--from-state",
-            "state",
-            metavar="STATE",
-            help="The state at the start of the recording: `Door=open,Gauge.level=3`.  [default: the initial state]",
-        ),
-    ):
-        command = option(command)
-    return command
+    """Add the options of a judgement to a command, which receives them as `judgement`."""
+
+    @click.option(
+        "--from-state",
+        "state",
+        metavar="STATE",
+        help="The state at the start of the recording: `Door=open,Gauge.level=3`.  [default: the initial state]",
+    )
+    @click.option(
+        "--tolerance",
+        type=click.FloatRange(min=0, max=60_000),
+        default=TOLERANCE_MS,
+        show_default=True,
+        metavar="MS",
+        help="Accept a command that is permitted at most this many milliseconds earlier or later.",
+    )
+    @click.option("--namespace", default="", metavar="NS", help="The namespace of relative names in the recording.")
+    @click.option(
+        "--remap",
+        "-r",
+        "remappings",
+        multiple=True,
+        metavar="FROM:=TO",
+        callback=_remappings,
+        help="The recording has the topic, service or action TO in place of FROM; repeatable.",
+    )
+    @wraps(command)
+    def with_judgement(
+        *, state: str | None, tolerance: float, namespace: str, remappings: Mapping[str, str], **options: Any
+    ) -> None:
+        command(judgement=Judgement(state, tolerance, namespace, remappings), **options)
+
+    return with_judgement
 
 
 @click.command("audit")
@@ -82,10 +103,7 @@ def command(
     model: str,
     recording: str,
     as_object: bool,
-    state: str | None,
-    tolerance: float,
-    namespace: str,
-    remappings: Mapping[str, str],
+    judgement: Judgement,
     parameter_texts: Sequence[str],
     chosen: str | None,
     paths: Paths,
@@ -110,7 +128,7 @@ def command(
         set_parameters(models.rosgraph, parameter_texts)
         settings = read_configuration(model, chosen, report)
         supervise_models(models, report)
-    judge = judge_of(models, settings, recording, state, tolerance, namespace, remappings)
+    judge = judge_of(models, settings, recording, judgement)
     fault = run(judge)
     audit = judge.audit
     if as_object:
@@ -128,24 +146,23 @@ def judge_of(
     models: Models,
     settings: Configuration,
     recording: str,
-    state: str | None,
-    tolerance: float,
-    namespace: str,
-    remappings: Mapping[str, str],
+    judgement: Judgement,
     watch: Watch | None = None,
 ) -> RecordingJudge | LogJudge:
-    """Return the judge of a recording, with the options of `judging`. Raises CallError."""
+    """Return the judge of a recording. Raises CallError."""
     from robosc.base.recordings import is_recording
     from robosc.base.ros_types import RosTypes
     from robosc.run.audit import AuditOptions, LogJudge, RecordingJudge
 
     types = models.ros_types or RosTypes()
-    start = {} if state is None else _state(models.sct, state)
+    start = {} if judgement.state is None else _state(models.sct, judgement.state)
     if not is_recording(recording):
         return LogJudge(models.sct, models.rosgraph, types, recording, start, watch)
     if models.rosgraph is None:
         raise CallError("the model has no ROS graph: use its .rosgraph.xmi or .rscd")
-    options = AuditOptions(start, round(tolerance * 1e6), namespace, remappings, watch)
+    options = AuditOptions(
+        start, round(judgement.tolerance * MILLISECOND), judgement.namespace, judgement.remappings, watch
+    )
     return RecordingJudge(models.rosgraph, settings, types, recording, options)
 
 
@@ -188,7 +205,7 @@ def _state(model: sct.SupervisoryControlModel, text: str) -> dict[sct.Plant | sc
     for element, code in codes.items():
         if isinstance(element, sct.Plant):
             values[element] = element.locations[code].name
-        else:
+        elif isinstance(element, sct.DiscreteVariable):
             domain = Domain(element.type)
             values[element] = domain.external(domain.low + code)
     return values

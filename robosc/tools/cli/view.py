@@ -15,7 +15,7 @@ from robosc.base.recordings import RecordingError, is_recording
 from robosc.run.simulation import Simulation
 from robosc.run.simulation.sources import PlayError, counterexample_steps, recorded_moments, script_steps
 from robosc.tools.cli import CallError, put, say
-from robosc.tools.cli.audit import judge_of, judging, run
+from robosc.tools.cli.audit import Judgement, judge_of, judging, run
 from robosc.tools.cli.options import FILE, Paths, over_ros, paths, synthesizer
 from robosc.tools.cli.parameters import parameters, set_parameters
 from robosc.tools.cli.reading import read_configuration, read_models, supervise_models
@@ -70,10 +70,7 @@ def command(
     node: str | None,
     log: str | None,
     audited: str | None,
-    state: str | None,
-    tolerance: float,
-    namespace: str,
-    remappings: Mapping[str, str],
+    judgement: Judgement,
     refuted: str | None,
     seed: int,
     folder: str | None,
@@ -87,8 +84,8 @@ def command(
 
     MODEL is a .rscd file with a robot, a .cif or .wmod file, or an .xmi file written by `transform --to xmi`. By
     default, the robot is simulated: a click performs an event. --log and --trace show a recorded run, and you can
-    continue from any moment of it in simulation. --audit marks what the supervisor would have forbidden. --ros2 shows a running robot, from its node's reports on ~/state. With
-    several models, you select one on the page.
+    continue from any moment of it in simulation. --audit marks the commands that the supervisor forbids in a recording.
+    --ros2 shows a running robot, from its node's reports on ~/state. With several models, you select one on the page.
 
     \b
     Examples:
@@ -103,14 +100,7 @@ def command(
 
     Exit status: 0 success, 1 errors in the model or log, 2 a wrong call, 3 no supervisor exists.
     """
-    if sum([live, log is not None, audited is not None, refuted is not None]) > 1:
-        raise click.UsageError("--ros2, --log, --audit and --trace exclude each other")
-    if audited is None and (state is not None or tolerance or namespace or remappings):
-        raise click.UsageError("--from-state, --tolerance, --namespace and --remap need --audit")
-    if live and folder is not None:
-        raise click.UsageError("a running robot cannot be exported: record it, and export the recording with --log")
-    if len(models) > 1 and {node, log, audited, refuted, folder} != {None}:
-        raise click.UsageError("--node, --log, --audit, --trace and --export are for one model")
+    _check_sources(models, live, node, log, audited, judgement, refuted, folder)
     try:
         from robosc.tools import view
     except ModuleNotFoundError as error:
@@ -125,9 +115,7 @@ def command(
             supervise_models(robot, report)
             simulation = Simulation(robot.sct, robot.rosgraph, robot.ros_types)
             if audited is not None:
-                judged = partial(
-                    judge_of, robot, settings, audited, state, tolerance, namespace, remappings
-                )
+                judged = partial(judge_of, robot, settings, audited, judgement)
                 record: Moments = _audited(simulation, robot.rosgraph, judged)
             elif not live:
                 record = _record(simulation, robot.rosgraph, log, node, refuted, seed, report)
@@ -150,6 +138,27 @@ def command(
             _serve(shown, address, port, opens=opens, begin=begin)
     except view.PageError as error:
         raise CallError(str(error)) from None
+
+
+def _check_sources(
+    models: Sequence[str],
+    live: bool,
+    node: str | None,
+    log: str | None,
+    audited: str | None,
+    judgement: Judgement,
+    refuted: str | None,
+    folder: str | None,
+) -> None:
+    """Raise UsageError for options that exclude each other."""
+    if sum([live, log is not None, audited is not None, refuted is not None]) > 1:
+        raise click.UsageError("--ros2, --log, --audit and --trace exclude each other")
+    if audited is None and judgement != Judgement():
+        raise click.UsageError("--from-state, --tolerance, --namespace and --remap need --audit")
+    if live and folder is not None:
+        raise click.UsageError("a running robot cannot be exported: record it, and export the recording with --log")
+    if len(models) > 1 and {node, log, audited, refuted, folder} != {None}:
+        raise click.UsageError("--node, --log, --audit, --trace and --export are for one model")
 
 
 def _nodes(graph: rosgraph.RosGraph, settings: Configuration) -> list[str]:

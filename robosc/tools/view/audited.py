@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from robosc.run.audit.as_text import describe
 from robosc.tools.view.moments import Moments
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from robosc.engine import Engine
     from robosc.engine.timers import Timers
     from robosc.model import rosgraph
@@ -50,7 +52,7 @@ class Audited(Moments):
         elif self._audited.saved[0] != self._cells:
             self._follow({"event": event, "words": self.describe_event(event), "data": {}})
 
-    def _follow(self, entries: dict[str, object]) -> None:
+    def _follow(self, entries: Mapping[str, Any]) -> None:
         """Add a moment with the state of the audit."""
         assert self._audit is not None
         assert self._audited is not None

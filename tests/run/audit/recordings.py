@@ -32,7 +32,7 @@ class Entry(NamedTuple):
     time: float
     topic: str
     type: str
-    fields: Mapping[str, Any] = {}  # noqa: RUF012  # never changed
+    fields: Mapping[str, Any] = {}  # never changed
 
     @property
     def nanoseconds(self) -> int:

@@ -19,7 +19,7 @@ from robosc.base.recordings import RecordingError
 from robosc.base.ros_types import RosTypes
 from robosc.language.configuration import Configuration
 from robosc.run.audit import AuditOptions, RecordingJudge
-from tests.run.audit.recordings import FORMATS, START, Entry, store, write_mcap, write_sqlite
+from tests.run.audit.recordings import FORMATS, START, Entry, write_mcap, write_sqlite
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -176,12 +176,12 @@ def test_every_format_gives_the_findings_of_the_judge_by_hand(name: str, tmp_pat
 def random_drive(random: Random, length: int = 120) -> list[Entry]:
     """Return messages at random; no two of one topic are 0.5 s apart, so that the millisecond does not matter."""
     kinds = [
-        lambda time: step(time),
-        lambda time: correction(time),
-        lambda time: no_line(time),
+        step,
+        correction,
+        no_line,
         lambda time: scan(time, random.choice([CLEAR, CLEAR, BLOCKED, CLEAR[:50], [float("nan")] * 360])),
         lambda time: button(time, pressed=random.random() < 0.3),
-        lambda time: resume(time),
+        resume,
     ]
     entries, slot = [], 0
     for _ in range(length):
@@ -192,9 +192,7 @@ def random_drive(random: Random, length: int = 120) -> list[Entry]:
 
 @settings(max_examples=25, deadline=None)
 @given(seed=st.integers(0, 10**9))
-def test_random_recordings_are_judged_as_by_hand(
-    seed: int, tmp_path_factory: pytest.TempPathFactory
-) -> None:
+def test_random_recordings_are_judged_as_by_hand(seed: int, tmp_path_factory: pytest.TempPathFactory) -> None:
     entries = random_drive(Random(seed))
     path = write_mcap(tmp_path_factory.mktemp("drive") / "drive", entries)
     assert found(audited(graph_of(FOLLOWER), path)) == by_hand(entries)

@@ -350,7 +350,10 @@ def test_a_tolerance_accepts_what_was_permitted_shortly_before_or_after(tmp_path
 
 def test_a_tolerance_does_not_hide_a_second_command(tmp_path: Path) -> None:
     """The controller knows its own commands: the state before the first does not permit the second."""
-    down = [Entry(0.0, "/done", "std_msgs/msg/Empty"), *(Entry(time, "/down", "std_msgs/msg/Empty") for time in (1.0, 1.002))]
+    down = [
+        Entry(0.0, "/done", "std_msgs/msg/Empty"),
+        *(Entry(time, "/down", "std_msgs/msg/Empty") for time in (1.0, 1.002)),
+    ]
     audit = audited(graph_of(CART), write_mcap(tmp_path / "run", down), tolerance=5_000_000)
     assert ("forbidden", "Arm.down", "state", [1.002]) in found(audit)
 

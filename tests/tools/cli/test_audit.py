@@ -25,7 +25,7 @@ TWICE = [word(0.0, "open"), word(1.0, "open"), word(2.0, "open"), word(2.5, "clo
 
 
 @pytest.fixture
-def door(run: Run, tmp_path: Path) -> Path:
+def door(tmp_path: Path) -> Path:
     (tmp_path / "door.rscd").write_text(DOOR, encoding="utf-8")
     return write_mcap(tmp_path / "twice", TWICE)
 
@@ -50,7 +50,8 @@ def test_json_has_every_time(run: Run, door: Path) -> None:
     assert (finding["name"], finding["reason"], finding["times"]) == ("Leaf.open", "requirement", [1.0, 2.0])
 
 
-def test_a_recording_without_findings_has_status_0(run: Run, tmp_path: Path, door: Path) -> None:
+@pytest.mark.usefixtures("door")
+def test_a_recording_without_findings_has_status_0(run: Run, tmp_path: Path) -> None:
     path = write_mcap(tmp_path / "once", [TWICE[0], TWICE[3]])
     assert run("audit", "door.rscd", path).exit_code == 0
     started = run("audit", "door.rscd", path, "--from-state", "Leaf=opened")
@@ -58,7 +59,8 @@ def test_a_recording_without_findings_has_status_0(run: Run, tmp_path: Path, doo
     assert "0.000 s  Leaf.open" in started.stdout
 
 
-def test_names_are_remapped(run: Run, tmp_path: Path, door: Path) -> None:
+@pytest.mark.usefixtures("door")
+def test_names_are_remapped(run: Run, tmp_path: Path) -> None:
     path = write_mcap(tmp_path / "other", [word(0.0, "hall/open"), word(1.0, "hall/open")])
     names = ("-r", "/open:=/hall/open", "-r", "/close:=/hall/close")
     assert "2 commands" in run("audit", "door.rscd", path, *names).stdout
@@ -82,7 +84,8 @@ def test_wrong_calls_and_damaged_recordings_have_status_2(run: Run, tmp_path: Pa
     assert "events.jsonl:1:" in done.stderr
 
 
-def test_an_event_log_is_audited(run: Run, tmp_path: Path, door: Path) -> None:
+@pytest.mark.usefixtures("door")
+def test_an_event_log_is_audited(run: Run, tmp_path: Path) -> None:
     event = "message_open.c_trigger"
     lines = [json.dumps({"time": time, "direction": "out", "event": event}) for time in (1.0, 2.0)]
     (tmp_path / "events.jsonl").write_text("\n".join([*lines, ""]), encoding="utf-8")
@@ -92,7 +95,9 @@ def test_an_event_log_is_audited(run: Run, tmp_path: Path, door: Path) -> None:
 
 
 def test_view_marks_the_findings(run: Run, door: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(import_module("robosc.tools.view.export"), "page_files", lambda: {"index.html": b"<meta charset=\"utf-8\" />"})
+    monkeypatch.setattr(
+        import_module("robosc.tools.view.export"), "page_files", lambda: {"index.html": b'<meta charset="utf-8" />'}
+    )
     done = run("view", "door.rscd", "--audit", door, "--export", "page")
     assert done.exit_code == 0, done.output
     text = Path("page/run.js").read_text(encoding="utf-8")
