@@ -118,10 +118,10 @@ class Recording:
                 )
                 for connection in reader.connections
             }
-            wanted = [
+            connections = [
                 connection for connection in reader.connections if is_wanted(connection.topic, connection.msgtype)
             ]
-            for connection, time, data in reader.messages(wanted) if wanted else ():
+            for connection, time, data in reader.messages(connections) if connections else ():
                 yield time, channels[connection.id], data
 
     def _mcap(self, file: IO[bytes], is_wanted: Callable[[str, str], bool]) -> Iterator[tuple[int, Channel, bytes]]:

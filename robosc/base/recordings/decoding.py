@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 #: Data of ROS: an object with fields as attributes.
 Message = Any
+#: Maximum number of fields and elements of a type, without those of arrays of varying length.
+_MOST_PARTS = 100_000
 #: Name of a type of a service or action, such as `std_srvs/srv/Trigger_Event`.
 _NAME = re.compile(r"\b([A-Za-z]\w*)/(?:msg|srv|action)/(\w+)")
 #: Suffixes of the types that services and actions are recorded with, with their fields in order of the type.
@@ -93,7 +95,7 @@ class Decoder:
         if kind not in self._fields:
             assert self._store is not None
             _, fields = self._store.fielddefs[kind.__msgtype__]
-            self._fields[kind] = {name: _written(description) for name, description in fields}
+            self._fields[kind] = {name: _type_text(description) for name, description in fields}
         return self._fields[kind]
 
     def _prepare(self) -> None:
@@ -104,8 +106,9 @@ class Decoder:
                 self._fault = f"its type is unreadable: {str(error) or type(error).__name__}"
         if self._store is None:
             raise DecodingError(self._fault)
-        read = self._store.deserialize_cdr if self._encoding == "cdr" else self._store.deserialize_ros1
-        self._decode = partial(_swapped, read, f"{self._package}/msg/{self._name}")
+        name = f"{self._package}/msg/{self._name}"
+        deserialize = self._store.deserialize_cdr if self._encoding == "cdr" else self._store.deserialize_ros1
+        self._decode = lambda data: deserialize(data, name)
 
     def _types(self) -> Typestore:
         store = get_typestore(Stores.EMPTY)
@@ -115,7 +118,7 @@ class Decoder:
             described: dict[str, Any] = {}
             _describe(self._package, self._name, self._known, described)
             store.register({name: fields for name, fields in described.items() if name not in store.fielddefs})
-        _require_finite(store.fielddefs)
+        _require_bounded(store.fielddefs)
         if self._encoding == "ros1":
             for name in ("Time", "Duration"):
                 kind: Any = store.types[f"builtin_interfaces/msg/{name}"]
@@ -132,10 +135,6 @@ def flat(kind: str) -> str:
 
 def _attribute(name: str, owner: Message) -> Any:
     return getattr(owner, name)
-
-
-def _swapped(read: Callable[[bytes, str], Message], kind: str, data: bytes) -> Message:
-    return read(data, kind)
 
 
 def _parsed(definition: str, form: str, name: str) -> dict[str, Any]:
@@ -202,7 +201,7 @@ def _description(kind: WireType) -> Any:
     return Nodetype.ARRAY, (_description(kind.element), kind.length)
 
 
-def _written(description: Any) -> str:
+def _type_text(description: Any) -> str:
     """Return a type as ROS writes it, such as `float64`, `string` or `uint8[9]`."""
     kind, details = description
     match kind:
@@ -211,34 +210,39 @@ def _written(description: Any) -> str:
         case Nodetype.NAME:
             return str(details)
         case Nodetype.ARRAY:
-            return f"{_written(details[0])}[{details[1]}]"
-    return f"{_written(details[0])}[]"
+            return f"{_type_text(details[0])}[{details[1]}]"
+    return f"{_type_text(details[0])}[]"
 
 
-def _require_finite(types: Mapping[str, Any]) -> None:
-    """Check that no type contains itself, and that no element of an array has no bytes: reading would not end.
+def _require_bounded(types: Mapping[str, Any]) -> None:
+    """Check that reading the types ends soon: none contains itself, and none has very many parts.
 
-    Raises DecodingError.
+    A part without bytes makes an array of any length possible. Raises DecodingError.
     """
-    sizes: dict[str, bool] = {}
+    sizes: dict[str, tuple[int, bool]] = {}
 
-    def has_bytes(name: str, above: Iterable[str]) -> bool:
+    def size(name: str, above: Iterable[str]) -> tuple[int, bool]:
+        """Return the number of parts of a type, and whether it has any bytes."""
         if name in above:
             raise DecodingError(f"{name} contains itself")
         if name not in sizes:
-            parts = [has_bytes_of(kind, (*above, name)) for _, kind in types[name][1]] if name in types else [True]
-            sizes[name] = any(parts)
+            parts = [size_of(kind, (*above, name)) for _, kind in types[name][1]] if name in types else [(1, True)]
+            sizes[name] = 1 + sum(count for count, _ in parts), any(has_bytes for _, has_bytes in parts)
+            if sizes[name][0] > _MOST_PARTS:
+                raise DecodingError(f"{name} has more than {_MOST_PARTS:,} parts")
         return sizes[name]
 
-    def has_bytes_of(description: Any, above: Iterable[str]) -> bool:
+    def size_of(description: Any, above: Iterable[str]) -> tuple[int, bool]:
         kind, details = description
         if kind == Nodetype.BASE:
-            return True
+            return 1, True
         if kind == Nodetype.NAME:
-            return has_bytes(details, above)
-        if not has_bytes_of(details[0], above):
+            return size(details, above)
+        count, has_bytes = size_of(details[0], above)
+        if not has_bytes:
             raise DecodingError("an array has elements without content")
-        return bool(kind == Nodetype.SEQUENCE or details[1] > 0)
+        is_basic = details[0][0] == Nodetype.BASE and details[0][1][0] != "string"
+        return (count if kind == Nodetype.SEQUENCE or is_basic else count * details[1]), True
 
     for name in types:
-        has_bytes(name, ())
+        size(name, ())

@@ -44,10 +44,9 @@ def lines(audit: Audit, most: int = MOST) -> Iterator[str]:
         yield f"{audit.robot}: the recording has no messages of the model"
     else:
         took = (audit.end - audit.start) / SECOND
-        began = datetime.fromtimestamp(audit.start / SECOND, UTC).isoformat(sep=" ", timespec="milliseconds")
         yield (
             f"{audit.robot}: {_count(audit.commands, 'command')} and {_count(audit.events, 'event')} of the robot"
-            f" in {took:,.3f} s from {began.removesuffix('+00:00')} UTC"
+            f" in {took:,.3f} s from {_date(audit.start)}"
         )
     for finding in audit.findings[:most]:
         yield from _finding(audit, finding)
@@ -63,9 +62,11 @@ def lines(audit: Audit, most: int = MOST) -> Iterator[str]:
         yield f"{number:,} {one if number == 1 else many}"
     if audit.tolerated:
         yield f"{_count(audit.tolerated, 'command')} permitted only shortly before or after"
+    if audit.safe:
+        yield f"{_count(audit.safe, 'safe message')} of the configuration"
     if audit.ignored:
         yield "Ignored in these states, which is no finding:"
-        yield from (f"  {event} in {state}: {count:,} times" for (event, state), count in audit.ignored.items())
+        yield from (f"  {event} in {state}: {_count(count, 'time')}" for (event, state), count in audit.ignored.items())
     if audit.unseen:
         yield "Not in the recording, so the model does not follow it:"
         yield from (f"  {name}: {why}" for name, why in audit.unseen.items())
@@ -96,3 +97,12 @@ def _state(name: str, part: object) -> str:
 
 def _count(number: int, word: str) -> str:
     return f"{number:,} {word}{'' if number == 1 else 's'}"
+
+
+def _date(time: int) -> str:
+    """Return a time in nanoseconds as a date, or in seconds if it is none."""
+    try:
+        moment = datetime.fromtimestamp(time / SECOND, UTC)
+    except (ValueError, OverflowError, OSError):
+        return f"{time / SECOND:,.3f} s"
+    return f"{moment.isoformat(sep=' ', timespec='milliseconds').removesuffix('+00:00')} UTC"

@@ -14,7 +14,7 @@ from robosc.run.runtime.core.blocking import Blocking
 from robosc.run.simulation import DataError, Simulation
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Collection, Iterator, Mapping, Sequence
 
     from robosc.base.ros_types import RosTypes
     from robosc.engine.state import Value
@@ -51,7 +51,10 @@ class LogJudge:
         path: str,
         state: Mapping[sct.Plant | sct.DiscreteVariable, Value] | None = None,
         watch: Watch | None = None,
+        safe: Collection[str] = (),
     ) -> None:
+        """`safe`: the commands that the node sends in spite of requirements."""
+        self._safe = safe
         self._simulation = Simulation(model, graph, types)
         self.engine = self._simulation.engine
         self.engine.state = self.engine.state_with(state or {})
@@ -103,7 +106,9 @@ class LogJudge:
             self._note(finding, time)
             return
         try:
-            if direction in _OUT:
+            if direction == "outside" and event in self._safe:
+                audit.safe += 1
+            elif direction in _OUT:
                 self._command(event, data, time)
             elif direction in _IN:
                 self._event(event, data, time)

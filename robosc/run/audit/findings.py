@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from robosc.run.runtime.core.json_text import Json
 
@@ -58,10 +60,10 @@ class Finding:
 class Audit:
     """Result of an audit. `start` and `end` are the times of its first and last message, in nanoseconds.
 
-    `commands` counts the judged commands, `tolerated` those that were permitted only shortly before or after, `events`
-    those of the robot. `ignored` counts the messages for which a
-    component has no transition, by event and state. `unseen` has the parts of the model that the recording cannot show,
-    with the reason. `notes` are further limits of the result.
+    `commands` counts the judged commands, `tolerated` those that were permitted only shortly before or after, `safe`
+    the forbidden ones that the configuration names as safe, `events` those of the robot. `ignored` counts the messages
+    for which a component has no transition, by event and state. `unseen` has the parts of the model that the recording
+    cannot show, with the reason. `notes` are further limits of the result.
     """
 
     robot: str
@@ -69,6 +71,7 @@ class Audit:
     end: int | None = None
     commands: int = 0
     tolerated: int = 0
+    safe: int = 0
     events: int = 0
     findings: list[Finding] = field(default_factory=list)
     ignored: dict[tuple[str, str], int] = field(default_factory=dict)
@@ -99,6 +102,11 @@ class Audit:
         """Count a message that a component ignores in its state."""
         self.ignored[event, state] = self.ignored.get((event, state), 0) + 1
 
+    def note(self, text: str) -> None:
+        """Add a note, once."""
+        if text not in self.notes:
+            self.notes.append(text)
+
     def seconds(self, time: int) -> float:
         """Return a time in seconds since the start."""
         return (time - (self.start or 0)) / SECOND
@@ -111,6 +119,7 @@ class Audit:
             "end": None if self.end is None else self.end / SECOND,
             "commands": self.commands,
             "tolerated": self.tolerated,
+            "safe": self.safe,
             "events": self.events,
             "findings": [self._finding(finding) for finding in self.findings],
             "ignored": [
@@ -132,6 +141,13 @@ class Audit:
             "because": list(finding.because),
             **details,
             **({"unheard": list(finding.unheard)} if finding.unheard else {}),
-            "components": dict(finding.components),
+            "components": _finite(finding.components),
             "times": [round(self.seconds(time), 6) for time in finding.times],
         }
+
+
+def _finite(value: Any) -> Any:
+    """Return JSON data with null in place of numbers that are not finite."""
+    if isinstance(value, Mapping):
+        return {name: _finite(inner) for name, inner in value.items()}
+    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from robosc.base.diagnostics.visible import visible
 from robosc.base.recordings import RecordingError
 from robosc.run.audit.as_text import lines
 from robosc.run.audit.findings import MILLISECOND
@@ -132,10 +133,10 @@ def command(
     fault = run(judge)
     audit = judge.audit
     if as_object:
-        put(json.dumps(audit.as_json(), ensure_ascii=False, indent=2))
+        put(json.dumps(audit.as_json(), indent=2))
     else:
         for line in lines(audit):
-            say(line)
+            say(visible(line))
     if fault:
         raise CallError(fault)
     if audit.findings:
@@ -152,12 +153,16 @@ def judge_of(
     """Return the judge of a recording. Raises CallError."""
     from robosc.base.recordings import is_recording
     from robosc.base.ros_types import RosTypes
+    from robosc.model.semantics.roles import event_name
     from robosc.run.audit import AuditOptions, LogJudge, RecordingJudge
+    from robosc.run.audit.judge import safe_messages
 
     types = models.ros_types or RosTypes()
     start = {} if judgement.state is None else _state(models.sct, judgement.state)
     if not is_recording(recording):
-        return LogJudge(models.sct, models.rosgraph, types, recording, start, watch)
+        graph = models.rosgraph
+        safe = [] if graph is None else [event_name(message.event) for message in safe_messages(graph, settings)]
+        return LogJudge(models.sct, graph, types, recording, start, watch, safe)
     if models.rosgraph is None:
         raise CallError("the model has no ROS graph: use its .rosgraph.xmi or .rscd")
     options = AuditOptions(

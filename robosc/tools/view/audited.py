@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from robosc.run.audit.as_text import describe
+from robosc.tools.view.live import CAPACITY
 from robosc.tools.view.moments import Moments
 
 if TYPE_CHECKING:
@@ -20,11 +21,13 @@ if TYPE_CHECKING:
 class Audited(Moments):
     """Moments of an audit. Call `begin` with its engine before it runs; `note` is its `watch`.
 
-    Events that change nothing are left out: a recording of an hour has very many of them.
+    Events that change nothing are left out: a recording of an hour has very many of them. Beyond `most` moments, only
+    findings are added, up to twice as many moments.
     """
 
-    def __init__(self, simulation: Simulation, graph: rosgraph.RosGraph | None) -> None:
+    def __init__(self, simulation: Simulation, graph: rosgraph.RosGraph | None, most: int = CAPACITY) -> None:
         super().__init__(simulation, graph)
+        self._limit = most
         self._audit: Audit | None = None
         self._audited: Engine | None = None
         self._timers: Timers | None = None
@@ -45,7 +48,9 @@ class Audited(Moments):
         assert self._audited is not None
         if not self.moments:
             self._add(0.0, {}, {}, (), self._kept_last)
-        if finding is not None:
+        if len(self.moments) >= (self._limit if finding is None else 2 * self._limit):
+            self.status = f"After {self.moments[-1]['time']} s, the page leaves out events: `robosc audit` lists all."
+        elif finding is not None:
             words = self.describe_event(event) if event in self.events else event
             entries = {"event": event, "words": words, "data": {}, "by": finding.reason, "reason": describe(finding)}
             self._follow(entries)

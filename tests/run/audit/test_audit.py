@@ -43,8 +43,9 @@ def graph_of(text_or_path: str | Path) -> rosgraph.RosGraph:
     return robosc.to_rosgraph(robot)
 
 
-def audited(graph: rosgraph.RosGraph, path: Path, **options: Any) -> Audit:
-    judge = RecordingJudge(graph, Configuration(), RosTypes(), str(path), AuditOptions(**options))
+def audited(graph: rosgraph.RosGraph, path: Path, configuration: Configuration | None = None, **options: Any) -> Audit:
+    chosen = configuration or Configuration()
+    judge = RecordingJudge(graph, chosen, RosTypes(), str(path), AuditOptions(**options))
     return judge.run()
 
 

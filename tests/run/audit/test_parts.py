@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from robosc.language.configuration import Configuration
 from robosc.model import rosgraph
+from robosc.run.audit import judge
 from tests.run.audit.recordings import START, Entry, store, write_bag, write_mcap, write_sqlite
 from tests.run.audit.test_audit import audited, graph_of
 
@@ -428,3 +430,33 @@ def test_commands_that_share_a_topic_are_told_by_their_data(speed: float, tmp_pa
             ("unexpected", "Base.move", "state", [0.0, 0.3]),
             forbidden,
         ]
+
+
+def test_safe_messages_of_the_configuration_are_no_findings(tmp_path: Path) -> None:
+    """A layer sends a message of `onBlocked` itself. With other data, the message is a command like any other."""
+    entries = [
+        seen(0.0, near=True),
+        velocity(0.1, 0.9),
+        velocity(0.2, 0.0),
+    ]
+    path = write_mcap(tmp_path / "run", entries)
+    graph = graph_of(CART.replace("Person.far or value.linear.x <= 0.3", "Person.far").replace("Cart", "Wagon"))
+    assert found(audited(graph, path)) == [("forbidden", "Base.velocity", "requirement", [0.1, 0.2])]
+    audit = audited(graph, path, Configuration(on_blocked=["velocity"]))
+    assert found(audit) == [("forbidden", "Base.velocity", "requirement", [0.1])]
+    assert audit.safe == 1
+
+
+def test_a_jump_in_time_does_not_hold_up_the_audit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(judge, "_MOST_EXPIRIES", 500)
+    text = """robot Clock {
+  component Tick {
+    incoming message tick with identifier: "/tick", type: none
+    behaviour { initial marked state on { after 1 ms goto on } }
+  }
+}
+"""
+    entries = [Entry(time, "/tick", "std_msgs/msg/Empty") for time in (0.0, 86_400.0)]
+    audit = audited(graph_of(text), write_mcap(tmp_path / "run", entries))
+    assert (audit.commands, audit.findings) == (2, [])
+    assert audit.notes == ["timers expire more than 500 times between two messages: some are left out"]
