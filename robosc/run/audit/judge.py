@@ -287,7 +287,6 @@ class Judge(EventHandler):
 
     def decide(self) -> None:
         """Decide on all commands that wait: no later message can permit them."""
-        self._retry()
         while self._waiting:
             command = self._waiting.popleft()
             sending = self._permitted(command) or command.chosen

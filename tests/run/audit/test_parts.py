@@ -164,6 +164,8 @@ def test_forbidden_calls_and_goals_are_found(tmp_path: Path) -> None:
         status(1.2, (7, EXECUTING), (8, ACCEPTED)),  # beside another one
         status(1.3, (7, SUCCEEDED), (8, EXECUTING)),
         feedback(1.4, 8),
+        call(1.42, 2),  # while it drives to the second one
+        call(1.44, 2, answer=True),
         status(1.5, (7, SUCCEEDED), (8, SUCCEEDED)),
         feedback(1.6, 8),  # it has ended
     ]
@@ -370,6 +372,18 @@ def test_a_forbidden_command_happens_all_the_same(tmp_path: Path) -> None:
         call(0.4, 1, answer=True),
     ]
     assert found(audit_of(entries, tmp_path)) == [("forbidden", "Base.drive", "requirement", [0.2])]
+
+
+def test_an_event_against_an_assumption_happens_all_the_same(tmp_path: Path) -> None:
+    """Somebody opens the door of a standing robot by hand: it is open, and the robot must not drive."""
+    text = PORTER.replace("robot Porter", "robot Assuming").removesuffix("}\n")
+    graph = graph_of(f"{text}  assume A1: response from Door.opened needs Base.driving\n}}\n")
+    entries = [status(0.0), door(0.1, "opened"), status(0.2, (7, ACCEPTED))]
+    audit = audited(graph, write_mcap(tmp_path / "run", entries, store(2, ROS_2)))
+    assert found(audit) == [
+        ("assumption", "Door.opened", "assumption", [0.1]),
+        ("forbidden", "Base.drive", "requirement", [0.2]),
+    ]
 
 
 def test_the_start_may_be_another_state(tmp_path: Path) -> None:
