@@ -50,6 +50,7 @@ _GROUPS = {
         "simulate": "Simulate the supervised robot.",
         "view": "Show the decisions of a robot in a browser.",
         "test": "Run scenario tests.",
+        "audit": "Judge a recorded run: forbidden commands, violated assumptions.",
     },
     "Generate and run": {
         "transform": "Generate code and models.",

@@ -29,6 +29,7 @@ COMMANDS = [
     "simulate",
     "view",
     "test",
+    "audit",
     "transform",
     "run",
     "graph",
