@@ -117,6 +117,10 @@ class RecordingPort(ControllerPort):
         """Return no nodes."""
         return ()
 
+    def calling_nodes(self, client: Client) -> Several[str]:  # noqa: ARG002
+        """Return no nodes."""
+        return ()
+
     def endpoints(self) -> Mapping[rosgraph.Subscription | rosgraph.Publisher, list[Endpoint]]:
         """Return no endpoints."""
         return {}
