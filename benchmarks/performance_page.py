@@ -92,7 +92,10 @@ the highest value of the eight robots: the share of one core, the peak memory wi
 tick of the control loop, including the messages that it publishes.
 
 {table}
-In a compiled node, the C of the supervisor takes {engine} microseconds of a tick on average.
+A Python node that subscribes to the same types and does nothing takes 69 MB.
+"""
+
+ENGINE = """In a compiled node, the C of the supervisor takes {engine} microseconds of a tick on average.
 """
 
 WATCHED = """\
@@ -124,7 +127,8 @@ def page(results: Results) -> str:
         parts.append(FAST.format(stops=stops, table=_fast(fast)))
     if costs:
         seconds = _span(f"{measured['seconds']:.0f}" for measured in costs.values())
-        parts.append(COSTS.format(seconds=seconds, table=_costs(costs), engine=_engine(costs)))
+        parts.append(COSTS.format(seconds=seconds, table=_costs(costs)))
+        parts += [ENGINE.format(engine=engine) for engine in _engine(costs)]
     if seen:
         most = max(share for measured in seen.values() for share in measured["more"].values())
         share = f"at most {100 * most:.1f} %" if most >= 0.001 else "less than 0.1 %"
@@ -186,10 +190,11 @@ def _costs(costs: Mapping[Kind, Results]) -> str:
     return _table(["node", "processor", "memory", "tick"], rows)
 
 
-def _engine(costs: Mapping[Kind, Results]) -> str:
-    """Return the range of the engine's mean times in a tick, in microseconds."""
+def _engine(costs: Mapping[Kind, Results]) -> list[str]:
+    """Return the range of the engine's mean times in a tick, in microseconds; empty without compiled nodes."""
     nodes = [node for measured in costs.values() for node in measured["nodes"].values()]
-    return _range((node["engine"]["mean"] for node in nodes if "engine" in node), ".1f", "")
+    means = [node["engine"]["mean"] for node in nodes if "engine" in node]
+    return [_range(means, ".1f", "")] if means else []
 
 
 def _range(values: Iterable[float], form: str, unit: str) -> str:

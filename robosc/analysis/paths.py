@@ -58,6 +58,11 @@ class Layers:
         self._seen = start
         self._effort = 0
 
+    @property
+    def seen(self) -> Diagram:
+        """The states of all layers computed so far."""
+        return self._seen
+
     def path_to(self, goal: Diagram, effort: int | None = None) -> Path | None:
         """Return a shortest path to a state of `goal`; None if there is none or the effort is exceeded.
 

@@ -203,13 +203,14 @@ class ControlLoop:
         self._settle()
         self._serve(self._queued(), self.settings.events_per_tick or len(self._queued()))
 
-    def settle(self) -> None:
-        """Settle, then run each enabled cancel once.
+    def settle(self, *, cancels: bool = True) -> None:
+        """Settle, then run each enabled cancel once if `cancels`.
 
         A supervisory layer, which has no ticks, does this after an event.
         """
         self._settle()
-        self._serve(self._cancels, len(self._cancels))
+        if cancels:
+            self._serve(self._cancels, len(self._cancels))
 
     def _queued(self) -> list[str]:
         return [*self._cancels, *self._triggers]
@@ -248,8 +249,21 @@ class ControlLoop:
             return False
         if not self.engine.permits_inputs(event):
             return False
+        self._happen(event)
+        return True
+
+    def force(self, event: str) -> None:
+        """Perform an event that has happened although the supervisor or an assumption forbids it; see `Engine.force`.
+
+        The hook `before` is called as for other events, but cannot withhold it.
+        """
+        if self.hooks.before is not None:
+            self.hooks.before(event)
+        self._happen(event)
+
+    def _happen(self, event: str) -> None:
         self.timers.before(event)
-        self.engine.perform(event)
+        self.engine.force(event)
         self._quiescent = False
         self._owed.discard(event)
         for queue in (self._cancels, self._triggers):
@@ -260,7 +274,6 @@ class ControlLoop:
             self._taken.add(self._groups[event])
         if self.hooks.after is not None:
             self.hooks.after(event)
-        return True
 
     def _settle(self) -> None:
         left = self._bound

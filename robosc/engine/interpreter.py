@@ -173,10 +173,10 @@ class Engine:
         cells = self._cells if state is None else state.cells
         return bool(self._guards[event](cells, ()))
 
-    def permits_inputs(self, event: str) -> bool:
-        """Return whether an enabled event is allowed with its present inputs."""
+    def permits_inputs(self, event: str, state: State | None = None) -> bool:
+        """Return whether an event that is enabled in this or another state is allowed there with its present inputs."""
         guard = self._data_guards.get(event)
-        return guard is None or bool(guard(self._cells, self._inputs))
+        return guard is None or bool(guard(self._cells if state is None else state.cells, self._inputs))
 
     def set_inputs(self, event: str, data: Mapping[str, Value]) -> None:
         """Set inputs of the event (`i_response`) for this and later events. Integers saturate at their range.
@@ -193,11 +193,18 @@ class Engine:
             self.set_inputs(event, data)
         if not (self.enabled(event) and self.permits_inputs(event)):
             return False
+        self.force(event)
+        return True
+
+    def force(self, event: str) -> None:
+        """Perform an event regardless of requirements, synthesis and assumptions.
+
+        Precondition: the plants have an edge for it, so that `blocked_by` and `inputs_blocked_by` are not `PLANT`.
+        """
         after = list(self._cells)
         for step in self._effects[event]:
             step(self._cells, self._inputs, after)
         self._cells = tuple(after)
-        return True
 
     def location(self, plant: sct.Plant) -> int:
         """Return the position of the plant's location."""

@@ -236,7 +236,7 @@ def _is_name(tokens: Tokens, index: int, expectations: Sequence[str]) -> bool:
         return False
     if not is_reserved(token.text) or token.text not in following():
         return False
-    if before.is_keyword("requirement", "property") and after.text in following()[token.text]:
+    if before.is_keyword("requirement", "property", "disables") and after.text in following()[token.text]:
         return False
     return after.is_first or after.kind is not Kind.WORD or after.text in words_of("Base")
 
@@ -477,6 +477,8 @@ def _order_hint(tokens: Tokens, index: int, expectations: Sequence[str]) -> Repa
 def _requirement_hint(token: Token, before: Token, expectations: Sequence[str]) -> Repair | str | None:
     if ":" in expectations and (before.kind is Kind.STRING or token.is_keyword("automaton")):
         return _before(token, "write `:` before it", ":")
+    if (token.is_keyword("needs") and "after" in expectations) or before.is_keyword("disables"):
+        return "write the name of the communication alone, without the word for its event"
     if before.kind is Kind.STRING:
         return 'write the text before the colon: `requirement name "text": …`'
     if "needs" in expectations and token.text in {"when", "if", "requires", "while"}:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 #: Commands that run until they are interrupted.
-_LASTING = ("robosc run", "robosc view", "robosc lsp", "robosc dap")
+_LASTING = ("robosc run", "robosc gate", "robosc view", "robosc lsp", "robosc dap")
 #: Characters with a meaning in the shell.
 _SHELL = re.compile(r"[|<>;&$`*~\\\n]")
 

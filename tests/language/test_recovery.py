@@ -128,6 +128,8 @@ FAULTS = [
     ("feedback: double", "", "links", "expected `feedback`"),
     ("import EmergencyStop", "", "", "expected `import`"),
     ("{move, turn} needs", "{move, turn} when", "when", "write `needs`"),
+    ("{move, turn} needs", "request to move needs", "needs", "without the word for its event"),
+    ("disables reset", "disables request to reset", "request", "without the word for its event"),
     ("{move, turn} needs", "{move, turn needs", "needs", "expected `,` or `}`"),
     ("and Scanner.driving", "and", "", "expected an expression"),
     ("and Scanner.driving", "and (Scanner.driving", "", "expected an operator or `)`"),

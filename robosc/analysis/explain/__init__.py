@@ -7,7 +7,7 @@ user writes. Answers (`answers`) are rendered `as_text` for users and `as_json` 
 """
 
 from robosc.analysis.explain.answers import Emptiness, Explanation, Possibility
-from robosc.analysis.explain.as_json import data_of
+from robosc.analysis.explain.as_json import data_in_short, data_of
 from robosc.analysis.explain.as_text import NEEDLESS, Renderer
 from robosc.analysis.explain.explanations import emptiness, explain, explore, possibility
 from robosc.analysis.explain.names import NamingError, find_event, parse_state
@@ -19,6 +19,7 @@ __all__ = [
     "NamingError",
     "Possibility",
     "Renderer",
+    "data_in_short",
     "data_of",
     "emptiness",
     "explain",

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from robosc.analysis.blocking_in_words import describe_blocking
+from robosc.analysis.blocking_in_words import counterexample_in_words, describe_blocking
 from robosc.analysis.explain.answers import Emptiness, Explanation, Possibility
+from robosc.analysis.explain.as_text import NEEDLESS
 from robosc.analysis.paths import trace_data
-from robosc.analysis.wording import name
+from robosc.analysis.wording import in_words, name
 from robosc.model.semantics.roles import event_name
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
     from robosc.analysis.explain.answers import Answer, Loosening, Note
+    from robosc.model import sct
 
     At: TypeAlias = Callable[[Any], dict[str, Any]]
 
@@ -28,6 +30,20 @@ def data_of(answer: Answer | None, at: At) -> dict[str, Any]:
         case Emptiness():
             return _emptiness(answer, at)
     return {"empty": False}
+
+
+def data_in_short(explanation: Explanation, model: sct.SupervisoryControlModel) -> dict[str, Any]:
+    """Return the data about an event in a state, in words: the obstacles, and what makes the event possible."""
+    counterexample = explanation.counterexample
+    return {
+        "allowed": explanation.allowed,
+        "notes": [NEEDLESS]
+        if explanation.needless
+        else [note.text for note in (*explanation.plants, *explanation.requirements)],
+        "otherwise": "" if counterexample is None else counterexample_in_words(counterexample, model),
+        "changes": [note.text for note in explanation.changes],
+        "way": in_words(explanation.way, model) if explanation.way else "",
+    }
 
 
 def _explanation(explanation: Explanation, at: At) -> dict[str, Any]:

@@ -45,6 +45,8 @@ class Guide:
         self._system = GuardedSystem(model, encoding)
         states_by_goal = {goal: self._states(goal) & self._system.controlled for goal in goals}
         self._where = {goal: states for goal, states in states_by_goal.items() if states.satisfiable()}
+        #: Sets of states that no event leaves, from searches without a path.
+        self._closed: list[Diagram] = []
 
     @property
     def possible(self) -> set[Goal]:
@@ -59,8 +61,15 @@ class Guide:
         here = dict.fromkeys((domain.element for domain in self._encoding.layout.state), 0) | dict(codes)
         known = {goal: self._where[goal] for goal in goals if goal in self._where}
         elsewhere = [states for states in known.values() if not self._system.is_in(here, states)]
-        path = self._system.layers_from(here).path_to(self._encoding.diagrams.any_of(elsewhere))
+        for closed in self._closed:
+            if self._system.is_in(here, closed):
+                elsewhere = [states for states in elsewhere if (states & closed).satisfiable()]
+        if not elsewhere:
+            return Way([], set())
+        layers = self._system.layers_from(here)
+        path = layers.path_to(self._encoding.diagrams.any_of(elsewhere))
         if path is None:
+            self._closed.append(layers.seen)
             return Way([], set())
         events = [(step.event, dict(step.inputs)) for step in self._system.trace(path)]
         return Way(events, {goal for goal, states in known.items() if self._system.is_in(path.states[-1], states)})

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import random
 from collections import Counter
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property, partial, reduce
 from operator import or_
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from robosc.engine import ControlLoop, Hooks
 from robosc.model import sct
@@ -18,9 +19,10 @@ from robosc.run.node_tests.guide import Guide, Way
 from robosc.run.node_tests.steps import WAIT, Place, Stimulus, TourStep
 from robosc.run.simulation.data import EventData
 from robosc.synthesis import use_encoding
+from robosc.synthesis.bdd import OutOfRoomError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
     from collections.abc import Set as AbstractSet
 
     from robosc.engine import Settings
@@ -29,14 +31,16 @@ if TYPE_CHECKING:
     from robosc.model import rosgraph
     from robosc.synthesis.encoding import Encoding
 
+T = TypeVar("T")
+
 #: Maximum number of steps to explore; below it, all places are explored.
 _ALL = 12_000
-#: Number of randomized attempts to plan a tour: exhaustive, and guided.
-_PLANS, _GUIDED = 10, 5
+#: Number of randomized attempts to plan a tour: exhaustive, guided, and guided again after a deviation.
+_PLANS, _GUIDED, _AGAIN = 10, 5, 1
 #: Maximum length in steps of a path that replaces a part of a tour.
 _DETOUR = 4
-#: Give a goal up after this many paths that missed it.
-_IN_VAIN = 4
+#: Give a goal up after this many paths that missed it, and for a run after this many plans without it.
+_IN_VAIN, _PLANS_IN_VAIN = 4, 3
 
 
 class _Way(NamedTuple):
@@ -88,6 +92,9 @@ class Plan:
         self._timers = {timer.event.name: number for number, timer in enumerate(self._loop.engine.executed.timers)}
         self._pauses = self._time_passes = False
         self._shown = self._anywhere = 0
+        self._last_guide: Guide | None = None
+        #: Number of plans of the present run that lack a goal.
+        self._missed = Counter[Goal]()
 
     def is_like(self, other: Plan) -> bool:
         """Return whether another plan would plan the same tours from the same place and coverage."""
@@ -126,7 +133,7 @@ class Plan:
         """The goals that can be seen: from the first known place on, else in the supervised system."""
         if self.is_whole:
             return {goal for goal in self.goals if self.bits[goal] & self._anywhere}
-        return use_encoding(self.model, lambda encoding: self._guide(encoding).possible)
+        return self._with_guide(lambda guide: guide.possible)
 
     @cached_property
     def is_whole(self) -> bool:
@@ -209,20 +216,29 @@ class Plan:
 
     # Tours
 
-    def tour(self, start: Place, shown: AbstractSet[Goal]) -> list[TourStep]:
+    def tour(self, start: Place, shown: AbstractSet[Goal], *, again: bool = False) -> list[TourStep]:
         """Return a short path from a start that shows goals that can be shown and were not, as far as it is found.
 
-        If there are too many places to explore, decision diagrams guide the search.
+        If there are too many places to explore, decision diagrams guide the search. `again`: the run has deviated from
+        an earlier path, and a plain path is enough.
         """
         goals = self._mask(self.possible - shown)
+        if not again:
+            self._missed.clear()
         if not self.is_whole and not self._time_passes:
             known, self._known, self._time_passes = self._known, {}, True
             start = self.place(known[start].saved, pauses=start.pauses)
         if self.is_whole:
             tours = [self._planned(start, goals, choice) for choice in _choices(_PLANS)]
         else:
-            tours = use_encoding(self.model, lambda encoding: self._all_guided(start, goals, encoding))
-        return max(tours, key=lambda tour: ((_together(tour) & goals).bit_count(), -len(tour)))
+            number = _AGAIN if again else _GUIDED
+            tours = self._with_guide(
+                lambda guide: [self._guided(start, goals, guide, choice) for choice in _choices(number)]
+            )
+        best = max(tours, key=lambda tour: ((_together(tour) & goals).bit_count(), -len(tour)))
+        missed = goals & ~_together(best)
+        self._missed.update(goal for goal in self.goals if self.bits[goal] & missed)
+        return best
 
     def _planned(self, start: Place, goals: int, choice: random.Random) -> list[TourStep]:
         tour: list[TourStep] = []
@@ -253,14 +269,11 @@ class Plan:
             layer = onwards
         return []
 
-    def _all_guided(self, start: Place, goals: int, encoding: Encoding) -> list[list[TourStep]]:
-        guide = self._guide(encoding)
-        return [self._guided(start, goals, guide, choice) for choice in _choices(_GUIDED)]
-
     def _guided(self, start: Place, goals: int, guide: Guide, choice: random.Random) -> list[TourStep]:
         """Repeat the step that shows the most goals, else follow the supervised system's path to a missing goal."""
         tour: list[TourStep] = []
-        left, here, in_vain = goals, start, Counter[Goal]()
+        hopeless = {goal for goal, number in self._missed.items() if number >= _PLANS_IN_VAIN}
+        left, here, in_vain = goals & ~self._mask(hopeless), start, Counter[Goal]()
         while left:
             # Timers first: some expire only before anything has come in.
             showing = [step for step in self.steps(here) if step.shows & left]
@@ -279,11 +292,27 @@ class Plan:
             left &= ~_together(way)
         return self._shortened(start, tour, goals, 1)
 
-    def _guide(self, encoding: Encoding) -> Guide:
-        data: dict[str, list[dict[str, Value]]] = {}
-        for event, inputs in (pair for stimulus in self.stimuli for pair in stimulus.events):
-            data.setdefault(event, []).append(dict(inputs))
-        return Guide(self.model, encoding, self.goals, data)
+    def _with_guide(self, look: Callable[[Guide], T]) -> T:
+        """Return `look(guide)`. The guide lives on for the next call, with its closed sets."""
+        if self._last_guide is not None:
+            with suppress(OutOfRoomError):
+                return look(self._last_guide)
+            self._last_guide = None
+
+        def begin(encoding: Encoding) -> T:
+            data: dict[str, list[dict[str, Value]]] = {}
+            for event, inputs in (pair for stimulus in self.stimuli for pair in stimulus.events):
+                data.setdefault(event, []).append(dict(inputs))
+            guide = Guide(self.model, encoding, self.goals, data)
+            result = look(guide)
+            self._last_guide = guide
+            return result
+
+        return use_encoding(self.model, begin)
+
+    def release(self) -> None:
+        """Free the decision diagrams."""
+        self._last_guide = None
 
     def _codes(self, place: Place) -> Mapping[sct.Plant | sct.DiscreteVariable, int]:
         self._loop.engine.restore((place.cells, self._loop.engine.saved[1]))

@@ -64,7 +64,7 @@ class _Controller(DrivenController):
 
 
 #: Maximum number of deviations in a row that show no new goal: inputs may depend on data that no plan follows.
-_IN_VAIN = 50
+_IN_VAIN = 8
 
 
 class _Planned(NamedTuple):
@@ -138,6 +138,7 @@ class Tour(Drive):
             if left <= self.plan.possible - self._shown:
                 self.traces.pop()
                 break
+        self.plan.release()
         shown = frozenset(self._shown)
         impossible = frozenset(self.plan.goals) - self.plan.possible - shown
         self.coverage = Coverage(tuple(self.plan.goals), shown, impossible, self._steps)
@@ -152,7 +153,9 @@ class Tour(Drive):
             self._controller.look()
             shown = len(self._shown)
             in_vain = 0
-            while in_vain < _IN_VAIN and any(self._stepped(step) for step in self._tour()):
+            again = False
+            while in_vain < _IN_VAIN and any(self._stepped(step) for step in self._tour(again=again)):
+                again = True
                 in_vain = 0 if len(self._shown) > shown else in_vain + 1
                 shown = len(self._shown)
         finally:
@@ -167,10 +170,10 @@ class Tour(Drive):
         """Return whether the tour was created for this configuration and distribution."""
         return self._configuration == configuration and self._distribution is distribution
 
-    def _tour(self) -> list[TourStep]:
+    def _tour(self, *, again: bool) -> list[TourStep]:
         start, shown = self._controller.place(self.plan), frozenset(self._shown)
         if self._planned_before is None:
-            planned = _Planned(start, shown, self.plan.tour(start, shown))
+            planned = _Planned(start, shown, self.plan.tour(start, shown, again=again))
         else:
             before = next(self._planned_before, None)
             if before is None or before.shown != shown or not before.start.resembles(start):

@@ -2,22 +2,27 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from contextlib import nullcontext
+from typing import TYPE_CHECKING, TypeVar
 
 from robosc.language.configuration.parameters import controller_parameters, layer_parameters
 from robosc.model.semantics.messages import decides_with_data
 from robosc.run.runtime.core.controller import Controller
 from robosc.run.runtime.core.event_log import default_log
+from robosc.run.runtime.core.gate import GatedLayer
 from robosc.run.runtime.core.layer import Layer
 from robosc.run.runtime.core.node import RunningNode, StartError
 from robosc.run.runtime.core.settings import SafeMessages, Settings
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+    from contextlib import AbstractContextManager
 
     from robosc.language.configuration import Configuration
     from robosc.model import rosgraph
     from robosc.run.runtime.core.port import Server
+
+_Handler = TypeVar("_Handler", bound=Controller | Layer)
 
 
 def run_controller(
@@ -58,12 +63,34 @@ def run_layer(
     _run(_node(name, graph, configuration, arguments), name, graph, configuration, make)
 
 
-def _run(
+def run_gate(  # noqa: PLR0913, PLR0917 - a node, its models, and its caller
+    graph: rosgraph.RosGraph,
+    configuration: Configuration,
+    arguments: Sequence[str],
+    safe: SafeMessages,
+    serve: Callable[[RunningNode, GatedLayer], AbstractContextManager[None]],
+    node: RunningNode | None = None,
+) -> None:
+    """Run the supervisory layer of a graph as `run_layer` does, for a program in this process.
+
+    The context of `serve` lasts as long as the node runs. `node` is the node; by default, it is one of ROS 2.
+    """
+
+    def make(node: RunningNode, log: str) -> tuple[GatedLayer, Settings]:
+        settings = Settings(node.parameters(layer_parameters(graph, configuration, log)), configuration)
+        return GatedLayer(graph, settings, node, node.event_loop, safe), settings
+
+    name = configuration.layer_name(graph)
+    _run(node or _node(name, graph, configuration, arguments), name, graph, configuration, make, serve)
+
+
+def _run(  # noqa: PLR0913, PLR0917 - a node, its models, and its handler
     node: RunningNode,
     name: str,
     graph: rosgraph.RosGraph,
     configuration: Configuration,
-    make: Callable[[RunningNode, str], tuple[Controller | Layer, Settings]],
+    make: Callable[[RunningNode, str], tuple[_Handler, Settings]],
+    beside: Callable[[RunningNode, _Handler], AbstractContextManager[None]] = lambda *_: nullcontext(),
 ) -> None:
     try:
         log = default_log(node.full_name, name) if configuration.write_events_to_log else ""
@@ -79,8 +106,9 @@ def _run(
     except StartError:
         node.close()
         raise
-    node.info(_started(node.full_name, graph, shows=bool(reports)))
-    node.spin(handler)
+    node.info(_started(node.full_name, graph, shows=bool(reports) and node.in_graph))
+    with beside(node, handler):
+        node.spin(handler)
 
 
 def _node(name: str, graph: rosgraph.RosGraph, configuration: Configuration, arguments: Sequence[str]) -> RunningNode:

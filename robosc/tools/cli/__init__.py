@@ -50,11 +50,13 @@ _GROUPS = {
         "simulate": "Simulate the supervised robot.",
         "view": "Show the decisions of a robot in a browser.",
         "test": "Run scenario tests.",
+        "audit": "Judge a recorded run: forbidden commands, violated assumptions.",
     },
     "Generate and run": {
         "transform": "Generate code and models.",
         "run": "Run the controller as a ROS node, without building it.",
         "graph": "Write the nodes of the running ROS system as JSON.",
+        "gate": "Let a language model or another program command a robot, behind its supervisor.",
         "interfaces": "Build ROS 2 types of your own, without colcon.",
     },
     "Editors": {

@@ -15,10 +15,12 @@ from robosc.tools.cli.reading import read_configuration, read_models, supervise_
 from robosc.tools.cli.report import Report
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from robosc.language.configuration import Configuration
     from robosc.m2t.models import Models
+    from robosc.model import rosgraph
+    from robosc.run.runtime.core.settings import SafeMessages
 
 
 @click.command("run", context_settings={"ignore_unknown_options": True})
@@ -71,15 +73,26 @@ def command(
                 [settings.warning(("lifecycle",), '"lifecycle" has no effect on `run`: its node is always active')]
             )
         report.stop_on_errors()
-    _run(models, settings, arguments, layer=layer)
+
+    def start(graph: rosgraph.RosGraph, safe: SafeMessages) -> None:
+        from robosc.run.runtime.node import run_controller, run_layer
+
+        (run_layer if layer else run_controller)(graph, settings, arguments, safe)
+
+    run_node(models, settings, start)
 
 
-def _run(models: Models, configuration: Configuration, arguments: Sequence[str], *, layer: bool) -> None:
+def run_node(
+    models: Models, configuration: Configuration, start: Callable[[rosgraph.RosGraph, SafeMessages], None]
+) -> None:
+    """Run the node of a robot: call `start` with its graph and the messages that the configuration names.
+
+    Raises CallError if the node can't start.
+    """
     from robosc.language.configuration.names import configured_names
     from robosc.model.semantics.messages import find_message
     from robosc.run.runtime.core.node import StartError
     from robosc.run.runtime.core.settings import SafeMessages
-    from robosc.run.runtime.node import run_controller, run_layer
 
     graph = models.rosgraph
     assert graph is not None
@@ -97,6 +110,6 @@ def _run(models: Models, configuration: Configuration, arguments: Sequence[str],
     gc.set_threshold(700, 10, 10)
     try:
         with configured_names(graph, configuration):
-            (run_layer if layer else run_controller)(graph, configuration, arguments, safe)
+            start(graph, safe)
     except StartError as error:
         raise CallError(f"{error}\n  {error.hint}" if error.hint else str(error)) from error

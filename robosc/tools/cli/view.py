@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import secrets
 import webbrowser
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +15,7 @@ from robosc.base.recordings import RecordingError, is_recording
 from robosc.run.simulation import Simulation
 from robosc.run.simulation.sources import PlayError, counterexample_steps, recorded_moments, script_steps
 from robosc.tools.cli import CallError, put, say
+from robosc.tools.cli.audit import Judgement, judge_of, judging, run
 from robosc.tools.cli.options import FILE, Paths, over_ros, paths, synthesizer
 from robosc.tools.cli.parameters import parameters, set_parameters
 from robosc.tools.cli.reading import read_configuration, read_models, supervise_models
@@ -24,6 +26,7 @@ if TYPE_CHECKING:
 
     from robosc.language.configuration import Configuration
     from robosc.model import rosgraph
+    from robosc.run.audit import LogJudge, RecordingJudge
     from robosc.tools.view import Live, Moments, Record
 
 
@@ -32,6 +35,14 @@ if TYPE_CHECKING:
 @over_ros("Show a running ROS 2 robot.")
 @click.option("--node", help="The node to show, such as /robot/line_follower_controller.  [default: its usual name]")
 @click.option("--log", type=click.Path(), help="Show an event log, a script, or a recording (bag, MCAP).")
+@click.option(
+    "--audit",
+    "audited",
+    type=click.Path(exists=True),
+    metavar="RECORDING",
+    help="Show the findings of an audit: a bag, an MCAP file, or an event log.",
+)
+@judging
 @click.option(
     "--trace",
     "refuted",
@@ -58,6 +69,8 @@ def command(
     live: bool,
     node: str | None,
     log: str | None,
+    audited: str | None,
+    judgement: Judgement,
     refuted: str | None,
     seed: int,
     folder: str | None,
@@ -71,8 +84,8 @@ def command(
 
     MODEL is a .rscd file with a robot, a .cif or .wmod file, or an .xmi file written by `transform --to xmi`. By
     default, the robot is simulated: a click performs an event. --log and --trace show a recorded run, and you can
-    continue from any moment of it in simulation. --ros2 shows a running robot, from its node's reports on ~/state. With
-    several models, you select one on the page.
+    continue from any moment of it in simulation. --audit marks the commands that the supervisor forbids in a recording.
+    --ros2 shows a running robot, from its node's reports on ~/state. With several models, you select one on the page.
 
     \b
     Examples:
@@ -81,17 +94,13 @@ def command(
       robosc view base.rscd arm.rscd --ros2
       robosc view line_follower.rscd --log ~/.ros/log/line_follower-events.jsonl
       robosc view line_follower.rscd --log rosbag2_2026_11_24-10_20_30
+      robosc view line_follower.rscd --audit rosbag2_2026_11_24-10_20_30
       robosc view line_follower.rscd --trace never-collides
       robosc view line_follower.rscd --log events.jsonl --export page
 
     Exit status: 0 success, 1 errors in the model or log, 2 a wrong call, 3 no supervisor exists.
     """
-    if sum([live, log is not None, refuted is not None]) > 1:
-        raise click.UsageError("--ros2, --log and --trace exclude each other")
-    if live and folder is not None:
-        raise click.UsageError("a running robot cannot be exported: record it, and export the recording with --log")
-    if len(models) > 1 and {node, log, refuted, folder} != {None}:
-        raise click.UsageError("--node, --log, --trace and --export are for one model")
+    _check_sources(models, live, node, log, audited, judgement, refuted, folder)
     try:
         from robosc.tools import view
     except ModuleNotFoundError as error:
@@ -105,8 +114,11 @@ def command(
             settings = read_configuration(model, None, report)
             supervise_models(robot, report)
             simulation = Simulation(robot.sct, robot.rosgraph, robot.ros_types)
-            if not live:
-                record: Moments = _record(simulation, robot.rosgraph, log, node, refuted, seed, report)
+            if audited is not None:
+                judged = partial(judge_of, robot, settings, audited, judgement)
+                record: Moments = _audited(simulation, robot.rosgraph, judged)
+            elif not live:
+                record = _record(simulation, robot.rosgraph, log, node, refuted, seed, report)
             else:
                 if robot.rosgraph is None:
                     raise CallError(
@@ -126,6 +138,27 @@ def command(
             _serve(shown, address, port, opens=opens, begin=begin)
     except view.PageError as error:
         raise CallError(str(error)) from None
+
+
+def _check_sources(
+    models: Sequence[str],
+    live: bool,
+    node: str | None,
+    log: str | None,
+    audited: str | None,
+    judgement: Judgement,
+    refuted: str | None,
+    folder: str | None,
+) -> None:
+    """Raise UsageError for options that exclude each other."""
+    if sum([live, log is not None, audited is not None, refuted is not None]) > 1:
+        raise click.UsageError("--ros2, --log, --audit and --trace exclude each other")
+    if audited is None and judgement != Judgement():
+        raise click.UsageError("--from-state, --tolerance, --namespace and --remap need --audit")
+    if live and folder is not None:
+        raise click.UsageError("a running robot cannot be exported: record it, and export the recording with --log")
+    if len(models) > 1 and {node, log, audited, refuted, folder} != {None}:
+        raise click.UsageError("--node, --log, --audit, --trace and --export are for one model")
 
 
 def _nodes(graph: rosgraph.RosGraph, settings: Configuration) -> list[str]:
@@ -178,6 +211,22 @@ def _record(
         report.add(error.findings, error.texts)
         report.stop_on_errors()
     return view.Record(simulation, graph, seed=seed)
+
+
+def _audited(
+    simulation: Simulation, graph: rosgraph.RosGraph | None, judged: Callable[..., RecordingJudge | LogJudge]
+) -> Moments:
+    """Return the moments of an audit. `judged` returns the judge for the function that watches it."""
+    from robosc.tools.view.audited import Audited
+
+    moments = Audited(simulation, graph)
+    judge = judged(watch=moments.note)
+    moments.begin(judge.audit, judge.engine, judge.timers)
+    fault = run(judge)
+    moments.finish()
+    if fault:
+        say(f"Error: {fault}", err=True)
+    return moments
 
 
 def _serve(

@@ -13,7 +13,7 @@ from mcp.shared.exceptions import MCPError
 from mcp_types import INVALID_PARAMS, CallToolResult, TextContent
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable
     from typing import BinaryIO
 
     from mcp.server.lowlevel import Server
@@ -22,21 +22,30 @@ if TYPE_CHECKING:
 MOST_BYTES = 64 << 20
 
 
-class Lines:
-    """Lines of a stream as text, each at most `MOST_BYTES` long. Bytes that are not UTF-8 become U+FFFD."""
+def _warn(size: int) -> None:
+    logging.warning("a message of more than %d MB was dropped", size >> 20)
 
-    def __init__(self, stream: BinaryIO) -> None:
+
+class Lines:
+    """Lines of a stream as text, each at most `most` bytes long. Bytes that are not UTF-8 become U+FFFD.
+
+    `dropped` is called for each longer line, with `most`.
+    """
+
+    def __init__(self, stream: BinaryIO, most: int = MOST_BYTES, dropped: Callable[[int], object] = _warn) -> None:
         self._stream = stream
+        self._most = most
+        self._dropped = dropped
 
     def readline(self) -> str:
         """Return the next line; an empty text at the end of the stream."""
         while True:
-            line = self._stream.readline(MOST_BYTES + 1)
-            if len(line) <= MOST_BYTES:
+            line = self._stream.readline(self._most + 1)
+            if len(line) <= self._most:
                 return line.decode("utf-8", errors="replace")
             while line and not line.endswith(b"\n"):
                 line = self._stream.readline(1 << 20)
-            logging.warning("a message of more than %d MB was dropped", MOST_BYTES >> 20)
+            self._dropped(self._most)
 
 
 def serve(server: Server[Any]) -> None:

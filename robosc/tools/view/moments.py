@@ -6,9 +6,8 @@ import asyncio
 import json
 from typing import TYPE_CHECKING, Any
 
-from robosc.analysis.blocking_in_words import counterexample_in_words
-from robosc.analysis.explain import NEEDLESS, explain, explore, parse_state
-from robosc.analysis.wording import in_words, words
+from robosc.analysis.explain import data_in_short, explain, explore, parse_state
+from robosc.analysis.wording import words
 from robosc.model.semantics.roles import Roles, event_name
 from robosc.run.simulation.simulation import whole_state
 from robosc.run.simulation.stored_variables import StoredVariables
@@ -227,16 +226,7 @@ class Moments:
                 self._explained.clear()
             codes = parse_state(self._model, json.dumps({"state": dict(state)}))
             explanation = explore(self._model, lambda system: explain(system, self.events[event], codes))
-            blocking = explanation.counterexample
-            self._explained[key] = {
-                "allowed": explanation.allowed,
-                "notes": [NEEDLESS]
-                if explanation.needless
-                else [note.text for note in (*explanation.plants, *explanation.requirements)],
-                "otherwise": "" if blocking is None else counterexample_in_words(blocking, self._model),
-                "changes": [note.text for note in explanation.changes],
-                "way": in_words(explanation.way, self._model) if explanation.way else "",
-            }
+            self._explained[key] = data_in_short(explanation, self._model)
         return self._explained[key]
 
 

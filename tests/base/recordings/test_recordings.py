@@ -19,7 +19,8 @@ from rosbags.rosbag2 import Writer as Ros2Writer
 from rosbags.typesys import Stores, get_typestore
 
 import robosc
-from robosc.base.recordings import RecordedText, RecordingError, bounds, is_recording, recorded_texts
+from robosc.base.recordings import RecordedText, Recording, RecordingError, bounds, is_recording, recorded_texts
+from robosc.base.recordings.decoding import DecodingError
 from robosc.run.simulation import Simulation
 from robosc.run.simulation.sources import PlayError, recorded_moments
 
@@ -281,3 +282,32 @@ def test_metadata_that_is_too_large_is_not_read(tmp_path: Path) -> None:
         file.write("#" * (5 << 20))
     with pytest.raises(RecordingError, match="more than 4 MB"):
         list(recorded_texts(str(path)))
+
+
+#: Definitions of a recording whose reading would not end, or would fill the memory.
+HOSTILE = {
+    "an array of nothing": "Nothing[] parts\n",
+    "a long array of nothing": "Nothing[4000000000] parts\n",
+    "a type in itself": "Evil[] parts\n",
+    "a type in itself, at once": "Evil part\n",
+    "no definition": "what is this\n",
+    "an unknown type": "other_msgs/Unknown part\n",
+}
+
+
+@pytest.mark.parametrize("encoding", ["cdr", "ros1"])
+@pytest.mark.parametrize("name", HOSTILE)
+def test_hostile_definitions_are_refused(name: str, encoding: str, tmp_path: Path) -> None:
+    path = tmp_path / "hostile.mcap"
+    definition = f"{HOSTILE[name]}{'=' * 80}\nMSG: evil_msgs/Nothing\n"
+    with path.open("wb") as file:
+        writer = McapWriter(file)
+        writer.start()
+        schema = writer.register_schema(
+            "evil_msgs/Evil", f"ros{1 if encoding == 'ros1' else 2}msg", definition.encode()
+        )
+        writer.add_message(writer.register_channel("/evil", encoding, schema), 0, b"\0\1\0\0" + b"\xff" * 8, 0)
+        writer.finish()
+    ((_, channel, data),) = list(Recording(str(path)).messages(lambda *_: True))
+    with pytest.raises(DecodingError):
+        channel.decode(data)

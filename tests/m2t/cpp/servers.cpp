@@ -121,7 +121,8 @@ void one_goal_is_open_at_a_time() {
   action.abort(6);
   action.succeed(7);
   action.publish(8);
-  CHECK(action.told == std::vector<std::string>({"goal 1", "a feedback 5", "a aborted 6"}));
+  const std::string rejected = "warn a goal is rejected: its data or the present state does not permit it";
+  CHECK(action.told == std::vector<std::string>({"goal 1", rejected, "a feedback 5", "a aborted 6"}));
   action.permitting = false;
   CHECK(!action.permits(1) && !action.is_open("a"));
 }

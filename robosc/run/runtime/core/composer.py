@@ -73,6 +73,15 @@ class Composer:
         self._limit(sending, message, {})
         return message
 
+    def limited_fields(self, sending: rosgraph.Sending, message: Message) -> Mapping[Path, Json]:
+        """Return the fields that the limits set in a message, by path, with their values. The message is unchanged.
+
+        Raises NotFiniteError or UnreadableError if the limits can't be computed.
+        """
+        fields: dict[Path, Json] = {}
+        self._limit(sending, deepcopy(message) if sending.limits else message, fields)
+        return fields
+
     def inputs(self, sending: rosgraph.Sending, message: Message) -> dict[str, Any]:
         """Return the inputs of a command with this data, by name.
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from robosc.base.ros_types.wire import FOLDERS, Section
 from robosc.language.configuration import ABSOLUTE_NAMES
 from robosc.model import rosgraph
+from robosc.run.runtime.core.gate import GatedLayer
 from robosc.run.runtime.core.layer import Layer
 from robosc.run.runtime.core.node_data import element_type
 from robosc.run.runtime.core.port import ControllerPort
@@ -54,6 +55,8 @@ class RunningNode(ControllerPort, ABC):
     #: Hint for a missing ROS type, and the exceptions of a ROS that rejects a name or value.
     type_hint: ClassVar[str]
     refusals: ClassVar[tuple[type[Exception], ...]]
+    #: Whether other programs can receive the node's reports.
+    in_graph: ClassVar[bool] = True
     event_loop: EventLoop
     #: Whether the clock is that of a simulation.
     simulated: bool
@@ -66,6 +69,7 @@ class RunningNode(ControllerPort, ABC):
         self._changing: dict[str, Parameter] = {}
         self._publishers: dict[rosgraph.Publisher, Any] = {}
         self._clients: dict[Client, Any] = {}
+        self._ended = False
 
     def unset(self, interface: rosgraph.Interface, section: Section, path: Sequence[str]) -> Message:
         """Return the object at a path in new data of a type; a step `0` is an element of an array."""
@@ -113,7 +117,10 @@ class RunningNode(ControllerPort, ABC):
     def connect(self, handler: Controller | Layer, settings: Settings) -> None:
         """Create publishers and clients, then subscriptions. Raises StartError if ROS rejects a name."""
         try:
-            if isinstance(handler, Layer):
+            if isinstance(handler, GatedLayer):
+                self._connect_commands()
+                self._connect_topics(handler)
+            elif isinstance(handler, Layer):
                 self._connect_layer(handler, settings)
             else:
                 self._connect_controller(handler)
@@ -131,18 +138,24 @@ class RunningNode(ControllerPort, ABC):
             self.warn(ABSOLUTE_NAMES % (namespace, ", ".join(outside)))
 
     def _connect_controller(self, controller: Controller) -> None:
+        self._connect_commands()
+        for served in self._graph.serviceServers:
+            self.serve(self._types[served.interface], served.identifier, controller.services[served].call)
+        for performed in self._graph.actionServers:
+            self._serve_action(performed, controller.actions[performed])
+        self._connect_topics(controller)
+
+    def _connect_commands(self) -> None:
         for publisher in self._graph.publishers:
             self._publishers[publisher] = self._publisher(publisher)
         for service in self._graph.serviceClients:
             self._clients[service] = self._service_client(service)
         for action in self._graph.actionClients:
             self._clients[action] = self._action_client(action)
-        for served in self._graph.serviceServers:
-            self.serve(self._types[served.interface], served.identifier, controller.services[served].call)
-        for performed in self._graph.actionServers:
-            self._serve_action(performed, controller.actions[performed])
+
+    def _connect_topics(self, handler: EventHandler) -> None:
         for subscription in self._graph.subscriptions:
-            self._subscribe(subscription, partial(controller.receive, subscription))
+            self._subscribe(subscription, partial(handler.receive, subscription))
 
     def _connect_layer(self, layer: Layer, settings: Settings) -> None:
         """Connect a layer between controller and robot: each name has a private counterpart for the controller."""
@@ -161,6 +174,11 @@ class RunningNode(ControllerPort, ABC):
             proxied = self._proxy(action, layer, settings.seconds("action_timeout_ms"))
             layer.goals[action.cancel] = self._clients[action] = proxied
 
+    def end(self) -> None:
+        """End `spin` soon, as an interrupt does; from any thread."""
+        self._ended = True
+        self.wake()
+
     def spin(self, handler: EventHandler) -> None:
         """Run a handler until the user interrupts it; stop it before the node ends."""
         interrupted: list[int] = []
@@ -173,7 +191,7 @@ class RunningNode(ControllerPort, ABC):
         for number in [signal.SIGINT, signal.SIGTERM, *hangup]:
             signal.signal(number, interrupt)
         handler.start()
-        while not interrupted and self._is_up():
+        while not interrupted and not self._ended and self._is_up():
             self._spin_once()
         handler.stop()
         while handler.busy:
@@ -224,6 +242,10 @@ class RunningNode(ControllerPort, ABC):
     @abstractmethod
     def _spin_once(self) -> None:
         """Do what is due, and wait for more, at most `LONGEST_WAIT` seconds."""
+
+    @abstractmethod
+    def wake(self) -> None:
+        """End the present wait, so that posted calls are made; from any thread."""
 
     @abstractmethod
     def _take_leave(self) -> None:
@@ -319,6 +341,10 @@ class RunningNode(ControllerPort, ABC):
     def publish(self, publisher: rosgraph.Publisher, message: Message) -> None:
         """Send a message."""
         self._publishers[publisher].publish(message)
+
+    def receivers(self, publisher: rosgraph.Publisher) -> int:
+        """Return the number of subscriptions to a topic that the node publishes."""
+        return int(self._publishers[publisher].get_subscription_count())
 
     @property
     def _topics(self) -> list[rosgraph.Subscription | rosgraph.Publisher]:

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 MOST_WAITING = 10
 #: Seconds that a stopping node waits at most until the middleware has the result of its goal.
 _LAST_RESULT = 5.0
+_REJECTED = "a goal is rejected: its data or the present state does not permit it"
 
 
 class ServiceServer:
@@ -95,8 +96,11 @@ class ActionServer:
         self._until = 0.0
 
     def accepts(self, goal: Message) -> bool:
-        """Return whether to accept a goal now."""
-        return self._events.permits(goal)
+        """Return whether to accept a goal now; report a rejection."""
+        permits = self._events.permits(goal)
+        if not permits:
+            self._warn(_REJECTED)
+        return permits
 
     def begin(self, goal: ServedGoal, data: Message) -> None:
         """Perform the event of an accepted goal. Precondition: `accepts` has just returned True for its data."""

@@ -194,6 +194,9 @@ class Ros2Node(RunningNode):
         wait = LONGEST_WAIT if left is None or self.simulated else min(left, LONGEST_WAIT)
         self._queues.run_once(wait)
 
+    def wake(self) -> None:
+        self._executor.create_task(lambda: None)
+
     def _take_leave(self) -> None:
         until = time.monotonic() + FAREWELL
         for publisher in self._publishers.values():

@@ -61,8 +61,12 @@ class GoalServer {
   virtual void conclude_cancel(Handle handle, const Result& result) = 0;
   virtual void fail(Handle handle, const Result& result, const char* why) = 0;
 
-  /// Whether a new goal is accepted now.
-  bool permits(const Goal& goal) const { return !handle_ && handlers_.permits(goal); }
+  /// Whether a new goal is accepted now. Reports a rejection.
+  bool permits(const Goal& goal) const {
+    const bool permitted = !handle_ && handlers_.permits(goal);
+    if (!permitted) handlers_.warn("a goal is rejected: its data or the present state does not permit it");
+    return permitted;
+  }
 
   /// Handles an accepted goal. The controller may end the goal at once.
   void begin(const Handle& handle, const Goal& goal) {
