@@ -51,9 +51,8 @@ def test_the_page_for_people_names_tools_and_limits() -> None:
     assert limits in page
 
 
-def test_a_message_that_is_too_long_is_dropped(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(stdio, "MOST_BYTES", 9)
-    lines = stdio.Lines(BytesIO(b"12345678\n" + b"1" * 99 + b"\n\xff\n1234567890"))
+def test_a_message_that_is_too_long_is_dropped() -> None:
+    lines = stdio.Lines(BytesIO(b"12345678\n" + b"1" * 99 + b"\n\xff\n1234567890"), most=9)
     assert [lines.readline() for _ in range(3)] == ["12345678\n", "\N{REPLACEMENT CHARACTER}\n", ""]
 
 
