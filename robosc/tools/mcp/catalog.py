@@ -200,6 +200,18 @@ _ALL = (
             "stop": _text("Command to send otherwise; `-` for none. Default: halt.", minLength=1),
             "service": _text("Service (std_srvs/Trigger) to call first, until it succeeds.", minLength=1),
             "twist": _flag("Send commands as velocities (geometry_msgs/Twist) on /cmd_vel."),
+            "guard": _flag("Create a guard: a supervisory layer in front of a robot."),
+            "topics": _texts("For a guard: topics of the robot, such as `/cmd_vel:geometry_msgs/Twist`."),
+            "services": _texts("For a guard: services of the robot, such as `/gripper/release:std_srvs/Trigger`."),
+            "actions": _texts(
+                "For a guard: actions of the robot, such as `/navigate_to_pose:nav2_msgs/NavigateToPose`."
+            ),
+            "button": {
+                "type": "string",
+                "enum": ["periodic", "latched"],
+                "description": "For a guard: whether the emergency stop repeats its state. Default: periodic.",
+            },
+            "pose": _text("For a guard: topic of the localization without which no goal passes.", minLength=1),
         },
         required=("name",),
         output=_object(folder={"type": "string"}, files={"type": "array", "items": {"type": "string"}}),

@@ -37,6 +37,7 @@ from robosc.tools.mcp.folders import Folders
 from robosc.tools.mcp.pages import OVERVIEW, all_pages
 from robosc.tools.mcp.search import excerpt, search
 from robosc.tools.starter import Choices
+from robosc.tools.starter.guard import GuardChoices
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -225,9 +226,7 @@ class Calls:
         return 0, {"page": text, "rules": [name]}
 
     def _new(self, arguments: Arguments, _report: Report) -> tuple[int, dict[str, Any]]:
-        chosen = {name: value for name, value in arguments.items() if name != "folder" and value}
-        chosen |= {name: None for name in ("stop", "service") if chosen.get(name) == "-"}
-        choices = Choices(**{**chosen, **({"sensors": tuple(chosen["sensors"])} if "sensors" in chosen else {})})
+        choices = _choices(arguments)
         fault = choices.fault()
         if fault is not None:
             raise CallError(fault)
@@ -249,3 +248,26 @@ class Calls:
                 for section in search(query, arguments.get("most", 5))
             ]
         }
+
+
+#: Arguments of `new` for a controller, and for a guard.
+_OF_CONTROLLERS = ("ros", "sensors", "command", "stop", "service", "twist")
+_OF_GUARDS = ("topics", "services", "actions", "button", "pose")
+
+
+def _choices(arguments: Arguments) -> Choices | GuardChoices:
+    """Return the choices for a new model. Raises CallError for an argument of the other kind of model."""
+    own, others = (_OF_GUARDS, _OF_CONTROLLERS) if arguments.get("guard") else (_OF_CONTROLLERS, _OF_GUARDS)
+    wrong = next((name for name in others if arguments.get(name)), None)
+    if wrong is not None:
+        meaning = "has no meaning for a guard" if own is _OF_GUARDS else "needs `guard`"
+        raise CallError(f"`{wrong}` {meaning}")
+    chosen: dict[str, Any] = {
+        name: tuple(arguments[name]) if isinstance(arguments[name], list) else arguments[name]
+        for name in own
+        if arguments.get(name)
+    }
+    if own is _OF_GUARDS:
+        return GuardChoices(arguments["name"], **chosen)
+    chosen |= {name: None for name in ("stop", "service") if chosen.get(name) == "-"}
+    return Choices(arguments["name"], **chosen)

@@ -61,6 +61,16 @@ def test_the_tools_describe_themselves(robosc: Assistant, desk: Path) -> None:
     assert str(desk) in (robosc.client.instructions or "")
 
 
+def test_an_assistant_writes_a_guard(robosc: Assistant, desk: Path) -> None:
+    topics, actions = ["/cmd_vel:geometry_msgs/Twist"], ["/navigate_to_pose:nav2_msgs/NavigateToPose"]
+    made = robosc.answer("new", name="Gate", guard=True, topics=topics, actions=actions, pose="/amcl_pose")
+    assert "gate.scenarios" in made["files"]
+    assert "limit cmd_vel with" in (desk / "gate" / "gate.rscd").read_text()
+    assert robosc.answer("check", path="gate/gate.rscd")["findings"] == []
+    assert robosc.answer("verify", path="gate/gate.rscd")["exit_status"] == 0
+    assert robosc.answer("test", path="gate/gate.rscd", scenarios=["gate/gate.scenarios"])["exit_status"] == 0
+
+
 def test_an_assistant_writes_a_robot_from_nothing(robosc: Assistant, desk: Path) -> None:
     made = robosc.answer("new", name="Porter", sensors=["clear"], service="calibrate")
     assert made["folder"] == "porter"

@@ -113,7 +113,7 @@ class GuardChoices:
         if fault:
             return fault
         if not self._named:
-            return "a guard needs a topic, service or action of the robot: add --topic, --service or --action"
+            return "a guard needs a topic, service or action of the robot: name at least one"
         for kind, text in self._named:
             name, _, type_name = text.partition(":")
             match = _TYPE.fullmatch(type_name)
