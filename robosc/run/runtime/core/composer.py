@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from copy import deepcopy
+from copy import copy, deepcopy
 from dataclasses import dataclass, field
 from functools import reduce
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robosc.model import expression as ex
 from robosc.model import rosgraph
@@ -17,7 +17,7 @@ from robosc.run.runtime.core.event_log import nest
 from robosc.run.runtime.core.node_data import NotFiniteError, fill, hand_on, require_finite, within_range
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from robosc.base.ros_types import Section
     from robosc.model.semantics.messages import Path
@@ -26,14 +26,88 @@ if TYPE_CHECKING:
     from robosc.run.runtime.core.port import ControllerPort, Message
 
 
+class _Assignment(NamedTuple):
+    """Assignment of a value to a field. `hands_on`: the value is an object, or an array of objects."""
+
+    path: Path
+    value: ex.Expression
+    condition: ex.Expression | None
+    type: ex.Type
+    hands_on: bool
+
+
+def _assignments(fields: Iterable[rosgraph.FieldAssignment]) -> list[_Assignment]:
+    return [
+        _Assignment(
+            tuple(field.path),
+            field.value,
+            field.condition,
+            field.type,
+            isinstance(field.value, rosgraph.WireAccess) and holds_objects(field.type),
+        )
+        for field in fields
+    ]
+
+
+class _Limit(NamedTuple):
+    """Limit of a command. `hands_on`: one of its assignments does."""
+
+    condition: ex.Expression | None
+    assignments: list[_Assignment]
+    hands_on: bool
+
+
+class _Input(NamedTuple):
+    """Input of a command. `range`: bounds of an integer of the message, which is at `path`."""
+
+    name: str
+    value: ex.Expression
+    range: ex.IntegerType | None
+    path: Path
+
+
+class _Command:
+    """Parts of a sending in the form that is quick to use for each message."""
+
+    def __init__(self, sending: rosgraph.Sending) -> None:
+        #: Provided data: assignments that apply in a location.
+        self.alternatives = [(data.location, _assignments(data.fields)) for data in sending.alternatives]
+        #: Paths of the doubles that the limits and the inputs read, and stored doubles that the limits read.
+        self.doubles = doubles_read(sending)
+        self.stored = list(stored_doubles(sending).items())
+        self.limits: list[_Limit] = []
+        for limit in sending.limits:
+            assignments = _assignments(limit.fields)
+            hands_on = any(assigned.hands_on for assigned in assignments)
+            self.limits.append(_Limit(limit.condition, assignments, hands_on))
+        limited = {assigned.path for limit in self.limits for assigned in limit.assignments}
+        #: Parts of a message on the way to the fields that limits change, the outer ones first.
+        self.changed = sorted({path[:length] for path in limited for length in range(1, len(path))}, key=len)
+        self.inputs = [
+            _Input(
+                assigned.input.name,
+                assigned.value,
+                kind if isinstance(kind, ex.IntegerType) and isinstance(assigned.value, rosgraph.WireAccess) else None,
+                path_of(assigned.value) if isinstance(assigned.value, rosgraph.WireAccess) else (),
+            )
+            for assigned in sending.inputs
+            for kind in [assigned.input.type]
+        ]
+
+
 @dataclass(frozen=True)
 class Composer:
     """Create data of ROS with a port. `data`: the data of the node."""
 
     port: ControllerPort
     data: NodeData
-    #: Paths of the doubles that the limits and the inputs of a command read.
-    _doubles: dict[rosgraph.Sending, list[Path]] = field(default_factory=dict)
+    _commands: dict[rosgraph.Sending, _Command] = field(default_factory=dict)
+
+    def _command(self, sending: rosgraph.Sending) -> _Command:
+        command = self._commands.get(sending)
+        if command is None:
+            command = self._commands[sending] = _Command(sending)
+        return command
 
     def default(
         self, sending: rosgraph.Sending, interface: rosgraph.Interface, section: Section, frame: str
@@ -54,12 +128,13 @@ class Composer:
         """
         message = self.default(sending, interface, section, frame)
         fields: dict[Path, Json] = {}
-        alternatives = sending.alternatives
-        chosen = next((data for data in alternatives if self.data.is_in(data.location)), None)
-        if chosen is not None:
-            self._assign(chosen.fields, message, None, fields)
-        self._limit(sending, message, fields)
-        if not alternatives and not sending.limits:
+        command = self._command(sending)
+        for location, assignments in command.alternatives:
+            if self.data.is_in(location):
+                self._assign(assignments, message, None, fields)
+                break
+        self._limit(command, message, fields)
+        if not command.alternatives and not command.limits:
             return message, None
         return message, {"value": fields["data",] if list(fields) == [("data",)] else nest(fields)}
 
@@ -68,9 +143,13 @@ class Composer:
 
         Raises NotFiniteError or UnreadableError if the limits can't be computed.
         """
-        if sending.limits:
-            message = deepcopy(message)
-        self._limit(sending, message, {})
+        command = self._command(sending)
+        if command.limits:
+            message = copy(message)
+            for *owners, name in command.changed:
+                owner = reduce(getattr, owners, message)
+                setattr(owner, name, copy(getattr(owner, name)))
+        self._limit(command, message, {})
         return message
 
     def limited_fields(self, sending: rosgraph.Sending, message: Message) -> Mapping[Path, Json]:
@@ -87,33 +166,32 @@ class Composer:
 
         Raises UnreadableError if an element is missing, or an integer is outside its range.
         """
-        values = {assigned.input.name: self.data.value(assigned.value, message) for assigned in sending.inputs}
-        for assigned in sending.inputs:
-            kind, value = assigned.input.type, values[assigned.input.name]
-            if not isinstance(kind, ex.IntegerType) or not isinstance(assigned.value, rosgraph.WireAccess):
-                continue
-            if within_range(value, kind) != value:
-                path = ".".join(path_of(assigned.value))
-                raise UnreadableError(f"its {path} is {value}, expected {kind.minimum} to {kind.maximum}")
-        literals = ex.EnumerationLiteral
-        return {name: value.name if isinstance(value, literals) else value for name, value in values.items()}
+        inputs = self._command(sending).inputs
+        values = {each.name: self.data.value(each.value, message) for each in inputs}
+        for name, _, bounds, path in inputs:
+            value = values[name]
+            if bounds is not None and within_range(value, bounds) != value:
+                where = ".".join(path)
+                raise UnreadableError(f"its {where} is {value}, expected {bounds.minimum} to {bounds.maximum}")
+            if isinstance(value, ex.EnumerationLiteral):
+                values[name] = value.name
+        return values
 
-    def _limit(self, sending: rosgraph.Sending, message: Message, fields: dict[Path, Json]) -> None:
-        if sending not in self._doubles:
-            self._doubles[sending] = doubles_read(sending)
-        for path in self._doubles[sending]:
+    def _limit(self, command: _Command, message: Message, fields: dict[Path, Json]) -> None:
+        for path in command.doubles:
             require_finite(message, path)
-        for name, stored in stored_doubles(sending).items():
+        for name, stored in command.stored:
             value = self.data.value(stored)
             if not all(map(math.isfinite, value if isinstance(value, Sequence) else [value])):
                 raise NotFiniteError([name])
-        for limit in sending.limits:
-            if limit.condition is None or self.data.value(limit.condition, message):
-                self._assign(limit.fields, message, deepcopy(message), fields)
+        for condition, assignments, hands_on in command.limits:
+            if condition is None or self.data.value(condition, message):
+                # All values are computed before a field changes, but an object is copied when its field changes.
+                self._assign(assignments, message, deepcopy(message) if hands_on else message, fields)
 
     def _assign(
         self,
-        assignments: Sequence[rosgraph.FieldAssignment],
+        assignments: Sequence[_Assignment],
         message: Message,
         before: Message,
         fields: dict[Path, Json],
@@ -128,9 +206,8 @@ class Composer:
             if assigned.condition is None or self.data.value(assigned.condition, before)
         ]
         values = [within_range(self.data.value(assigned.value, before), assigned.type) for assigned in chosen]
-        for assigned, value in zip(chosen, values, strict=True):
-            path = tuple(assigned.path)
-            if isinstance(assigned.value, rosgraph.WireAccess) and holds_objects(assigned.type):
+        for (path, *_, hands_on), value in zip(chosen, values, strict=True):
+            if hands_on:
                 hand_on(self.port, message, path, value)
                 for inside in [known for known in fields if known[: len(path)] == path]:
                     del fields[inside]
