@@ -501,6 +501,33 @@ def test_reasons_of_a_layer(tmp_path: Path) -> None:
     assert bench.blocked()["reason"] == "state"
 
 
+SLOW = "requirement R1: velocity needs Person.far or value.linear.x <= 0.3"
+RELEASED = "requirement velocity needs Button.released"
+
+
+@pytest.mark.parametrize(
+    ("pressed", "x", "because"), [(True, 0.2, [RELEASED]), (False, 0.5, [SLOW]), (True, 0.5, [SLOW, RELEASED])]
+)
+def test_reasons_of_two_kinds(tmp_path: Path, pressed: bool, x: float, because: list[str]) -> None:
+    """A requirement on the data that holds is no reason in a state in which another requirement forbids all data."""
+    text = more("requirement Base.velocity needs Button.released").replace(
+        "  component Base {",
+        """  component Button {
+    outgoing message pressed with identifier: "/pressed", type: boolean
+    behaviour {
+      initial marked state released { on response from pressed if value goto held }
+      marked state held { on response from pressed if !value goto released }
+    }
+  }
+  component Base {""",
+    )
+    bench = LayerBench(written(tmp_path, text))
+    bench.hear("/seen", data=True)
+    bench.hear("/pressed", data=pressed)
+    assert not bench.passes("velocity", twist(x))
+    assert bench.blocked()["because"] == because
+
+
 @pytest.mark.parametrize("setting", ["onShutdown", "onWithheld", "onBlocked"])
 def test_unsteady_stops(tmp_path: Path, setting: str) -> None:
     """A message that stops the robot has constant data."""

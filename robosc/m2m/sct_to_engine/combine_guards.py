@@ -64,14 +64,14 @@ def _guard(
     junction, possible, available, data = lower.terms.junction, {}, {}, []
     for plant, taken in by_plant.items():
         possible[plant] = available[plant] = _possible(plant, taken, lower)
-        if _reads_inputs(possible[plant]):
+        if reads_inputs(possible[plant]):
             _refuse_inputs_of_robot(event, taken)
             available[plant] = _possible(plant, taken, lower, with_some_data=True)
             data.append(possible[plant])
     supervising = []
     for part, with_some_data in _supervisor_parts(guard):
         term, state_part = lower(part), lower(with_some_data)
-        if _reads_inputs(term):
+        if reads_inputs(term):
             data.append(term)
             term = state_part
         supervising.append(junction(engine.And, [term, state_part]))
@@ -90,7 +90,8 @@ def _supervisor_parts(
     return [(guard.requirement, guard.someRequired), (guard.synthesis, guard.someData)]
 
 
-def _reads_inputs(condition: Term) -> bool:
+def reads_inputs(condition: Term) -> bool:
+    """Return whether a condition reads inputs."""
     return any(isinstance(declaration, engine.Input) for declaration in condition.reads())
 
 
@@ -102,7 +103,7 @@ def _possible(plant: sct.Plant, edges: Edges, lower: Lowering, *, with_some_data
 
     def one_of(leaving: Sequence[sct.Edge]) -> Term:
         whole = _one_of(leaving, lower)
-        return lower.terms.true if with_some_data and _reads_inputs(whole) else whole
+        return lower.terms.true if with_some_data and reads_inputs(whole) else whole
 
     if None in edges:
         return one_of(edges[None])

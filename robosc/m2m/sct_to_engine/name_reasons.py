@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from robosc.m2m.sct_to_engine.build_expressions import build_expression
 from robosc.m2m.sct_to_engine.collect_events import shorten
+from robosc.m2m.sct_to_engine.combine_guards import reads_inputs
 from robosc.model import engine, sct
 from robosc.model.semantics.roles import assumption_text
 
@@ -28,13 +29,22 @@ def name_reasons(
 ) -> None:
     """Set `reasons` of the events: requirements and assumptions for all; plants and synthesis only for commands."""
     assert model.supervisor is not None
-    for requirement in model.requirements:
-        forbidden = lower(requirement.condition, positive=requirement.kind == sct.RequirementKind.disables)
-        if any(isinstance(declaration, engine.Input) for declaration in forbidden.reads()):
-            # In a state in which the plants enable the command, no data are allowed.
-            guard, junction = guards[requirement.event], lower.terms.junction
-            nothing_allowed = junction(engine.And, [guard.plants, lower.terms.opposite(guard.requirement)])
-            forbidden = junction(engine.Or, [forbidden, nothing_allowed])
+    forbidding = {
+        requirement: lower(requirement.condition, positive=requirement.kind == sct.RequirementKind.disables)
+        for requirement in model.requirements
+    }
+    by_state: dict[sct.Event, list[Term]] = {}
+    for requirement, forbidden in forbidding.items():
+        if not reads_inputs(forbidden):
+            by_state.setdefault(requirement.event, []).append(forbidden)
+    for requirement, condition in forbidding.items():
+        forbidden = condition
+        if reads_inputs(condition):
+            # In a state in which the plants and the other requirements enable the command, no data are allowed.
+            guard, junction, opposite = guards[requirement.event], lower.terms.junction, lower.terms.opposite
+            others = map(opposite, by_state.get(requirement.event, ()))
+            nothing_allowed = junction(engine.And, [guard.plants, opposite(guard.requirement), *others])
+            forbidden = junction(engine.Or, [condition, nothing_allowed])
         if forbidden.constant != 0:
             reason = _reason(engine.Origin.requirement, forbidden, requirement.text or "a requirement")
             reason.requirement = requirement
