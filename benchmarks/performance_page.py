@@ -1,9 +1,12 @@
-"""Page of the documentation with the measurements of `reaction.py`."""
+"""Page of the documentation with the measurements of `reaction.py` and `layer_cost.py`."""
 
 from __future__ import annotations
 
+import json
 import math
+import re
 from dataclasses import dataclass
+from pathlib import Path
 from statistics import median
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +14,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
 Results = dict[str, Any]
+ROOT = Path(__file__).parent.parent
+STORED = ROOT / "benchmarks" / "performance.json"
+PAGE = ROOT / "docs" / "performance.md"
 
 
 @dataclass(frozen=True)
@@ -42,6 +48,7 @@ Measure your computer with
 ```sh
 python benchmarks/reaction.py
 python benchmarks/expiry.py
+python benchmarks/layer_cost.py
 ```
 
 Proofs do not bound these times: they hold for any delay.
@@ -105,6 +112,18 @@ The page of [`robosc view`](view.md) or a monitor on [`/diagnostics`](ros-output
 {most} of a core (measured: {kinds}). `robosc view` and the monitor themselves run in processes of their own.
 """
 
+LAYER = """\
+## A layer beside a relay
+
+A [supervisory layer](layer.md) and a plain relay forward {hz} velocities a second each, at the same time. The table
+shows the latency from publication to receipt in milliseconds, and the processor time per velocity. The relay of a
+compiled layer is a node in C++, that of `robosc run` a node in Python. *Direct* is the latency without a node between.
+
+{table}
+The layer limits the velocities, reads two of their fields for requirements, and handles ten scans of 360 rays and ten
+messages of an emergency stop each second. The relay forwards the same messages.
+"""
+
 
 def percentiles(seconds: Sequence[float]) -> dict[str, float]:
     """Return the median, the 99th percentile (nearest rank) and the maximum, in milliseconds."""
@@ -112,10 +131,26 @@ def percentiles(seconds: Sequence[float]) -> dict[str, float]:
     return {"median": median(ordered), "p99": ordered[math.ceil(0.99 * len(ordered)) - 1], "max": ordered[-1]}
 
 
-def page(results: Results) -> str:
-    """Return the page of all measurements, in Markdown."""
+def stored() -> Results:
+    """Return the stored measurements."""
+    results: Results = json.loads(STORED.read_text()) if STORED.exists() else {"machine": "two shared cores"}
+    return results
+
+
+def store(part: str, kind: Kind, measured: Results, **more: Any) -> None:
+    """Store the measurements of a part for a kind of node, and values for the whole page; write the page."""
+    results = stored() | more
+    results.setdefault(part, {})[kind.key] = measured
+    STORED.write_text(json.dumps(results, indent=1) + "\n")
+    PAGE.write_text(page(results, PAGE.read_text()))
+
+
+def page(results: Results, before: str = "") -> str:
+    """Return the page of all measurements, in Markdown. Sections without measurements stay as they were `before`."""
     parts = [HEAD.format(machine=results["machine"])]
-    stop, obstacle, costs, seen = (_of(results, part) for part in ("stop", "obstacle", "costs", "watched"))
+    stop, obstacle, costs, seen, layer = (
+        _of(results, part) for part in ("stop", "obstacle", "costs", "watched", "layer")
+    )
     if stop or obstacle:
         stops, obstacles = (
             _span(f"{measured['times']:,}" for measured in found.values()) for found in (stop, obstacle)
@@ -133,7 +168,13 @@ def page(results: Results) -> str:
         most = max(share for measured in seen.values() for share in measured["more"].values())
         share = f"at most {100 * most:.1f} %" if most >= 0.001 else "less than 0.1 %"
         parts.append(WATCHED.format(most=share, kinds="; ".join(kind.title for kind in seen)))
-    return "\n".join(parts)
+    if layer:
+        hz = _span(f"{measured['hz']:,}" for measured in layer.values())
+        parts.append(LAYER.format(hz=hz, table=_layer(layer)))
+    old = re.split(r"(?m)^(?=## )", before)[1:]
+    sections = {section.partition("\n")[0]: section.strip() + "\n" for section in [*old, *parts[1:]]}
+    titles = [text.partition("\n")[0] for text in (REACTION, FAST, COSTS, WATCHED, LAYER)]
+    return "\n".join([parts[0], *(sections[title] for title in titles if title in sections)])
 
 
 def _of(results: Results, part: str) -> dict[Kind, Results]:
@@ -201,3 +242,13 @@ def _range(values: Iterable[float], form: str, unit: str) -> str:
     ordered = sorted(values)
     low, high = (format(value, form) for value in (ordered[0], ordered[-1]))
     return f"{low}{unit}" if low == high else f"{low} to {high}{unit}"
+
+
+def _layer(layer: Mapping[Kind, Results]) -> str:
+    rows = []
+    for kind, measured in layer.items():
+        for way in ("direct", "relay", "layer"):
+            values = measured[way]
+            processor = f"{values['processor']:.0f} µs" if "processor" in values else ""
+            rows.append([f"{kind.title}: {way}", f"{values['median']:.2f}", f"{values['p99']:.2f}", processor])
+    return _table(["node", "median", "p99", "processor"], rows)

@@ -15,7 +15,6 @@ Compiled ROS 2 nodes need an rclcpp in AMENT_PREFIX_PATH, `run` the environment 
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 import tempfile
 import time
@@ -26,7 +25,7 @@ ROOT = Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT))
 
 from benchmarks.node_costs import costs, summary  # noqa: E402
-from benchmarks.performance_page import KINDS, page, percentiles  # noqa: E402
+from benchmarks.performance_page import KINDS, PAGE, percentiles, store  # noqa: E402
 from benchmarks.timed_packages import timed_packages  # noqa: E402
 from benchmarks.watched import watched  # noqa: E402
 from tests.ros.installations import find_ros1, find_ros2  # noqa: E402
@@ -39,8 +38,6 @@ if TYPE_CHECKING:
 
 #: Messages per second of each of the two sensors, in the part `fast`.
 RATES = (100, 400, 1000)
-KEPT = ROOT / "benchmarks" / "performance.json"
-PAGE = ROOT / "docs" / "performance.md"
 INTERFACES = ROOT / "tests" / "ros" / "interfaces"
 
 
@@ -63,17 +60,9 @@ def main() -> None:
                 _say(f"{kind.title}: {part} ...")
                 place = scratch / f"{kind.key}-{part}"
                 measured = PARTS[part](nodes, place, options)
-                kept = _kept() | {"machine": options.machine}
-                kept.setdefault(part, {})[kind.key] = measured
-                KEPT.write_text(json.dumps(kept, indent=1) + "\n")
-                PAGE.write_text(page(kept))
+                store(part, kind, measured, machine=options.machine)
                 _say(f"{kind.title}: {part} took {time.monotonic() - began:.0f} s")
-    print(page(_kept()))
-
-
-def _kept() -> dict[str, Any]:
-    kept: dict[str, Any] = json.loads(KEPT.read_text()) if KEPT.exists() else {"machine": ""}
-    return kept
+    print(PAGE.read_text())
 
 
 def _options() -> argparse.Namespace:
