@@ -35,7 +35,8 @@ def evaluate(
 class Program(Generic[_Result]):
     """An expression compiled to instructions of a stack machine: compiled once, run many times, without recursion.
 
-    A call of the program returns the value. The arguments of the call are passed to all readers.
+    A call of the program returns the value. The arguments of the call are passed to all readers. The body of a
+    quantifier is a program of its own, whose first arguments are the elements that quantifiers around it have reached.
     """
 
     def __init__(
@@ -43,13 +44,16 @@ class Program(Generic[_Result]):
         expression: ex.Expression,
         reader: Callable[[ex.Expression], Callable[..., Any]],
         fit: Callable[[int], int] | None = None,
+        around: Sequence[rosgraph.ArrayQuantifier] = (),
     ) -> None:
         """Compile an expression.
 
-        `reader` returns the function that reads a reference; `fit` is as for `evaluate`.
+        `reader` returns the function that reads a reference; `fit` is as for `evaluate`. `around`: the quantifiers
+        around the expression, the innermost first.
         """
         self._reader = reader
         self._fit = fit
+        self._around = around
         self._code: list[tuple[int, Any]] = []
         pending: list[Any] = [expression]
         while pending:
@@ -65,7 +69,6 @@ class Program(Generic[_Result]):
         """Run the instructions."""
         stack: list[Any] = []
         code, position = self._code, 0
-        loops = _Loops()
         while position < len(code):
             kind, argument = code[position]
             position += 1
@@ -85,7 +88,9 @@ class Program(Generic[_Result]):
                 else:
                     stack.pop()
             elif kind >= _CALL:
-                position = loops.step(kind, argument, stack, position, source)
+                count, function = argument
+                behind = source if kind == _REACH else ()
+                stack[len(stack) - count :] = [function(*stack[len(stack) - count :], *behind)]
             elif kind == _JUMP or not stack.pop():
                 position = argument.position
         return stack[0]  # type: ignore[no-any-return]
@@ -100,12 +105,10 @@ class Program(Generic[_Result]):
             chosen = [expression.condition, (_UNLESS, other), expression.then, (_JUMP, end)]
             return [*chosen, other, expression.otherwise, end]
         if isinstance(expression, rosgraph.ArrayQuantifier):
-            start = _Label()
-            initial, decided = _QUANTIFIERS[str(expression.quantifier)]
-            loop = [start, (_NEXT, (expression, end)), expression.body, (_TALLY, (decided, start, end)), end]
-            return [expression.array, (_EACH, (expression, initial)), *loop]
+            body = Program[Any](expression.body, self._reader, self._fit, [expression, *self._around])
+            return [expression.array, (_REACH, (1, partial(_QUANTIFIERS[str(expression.quantifier)], body)))]
         if isinstance(expression, rosgraph.IfReadable):
-            both = (Program[Any](part, self._reader, self._fit) for part in operands(expression))
+            both = (Program[Any](part, self._reader, self._fit, self._around) for part in operands(expression))
             return [(_READ_VALUE, partial(_if_readable, *both))]
         row = operator_of(expression)
         if row is None:
@@ -127,52 +130,36 @@ class Program(Generic[_Result]):
         The element of an array that it reads, if any, and its indices are computed first.
         """
         access = reference.argument if isinstance(reference, rosgraph.ConversionCall) else reference
-        reader = self._reader(reference)
-        bound = access.quantifier if isinstance(access, rosgraph.WireAccess) else None
-        parts: list[Any] = [(_BOUND, bound)] if bound is not None else []
-        parts += operands(access) if isinstance(access, rosgraph.WireAccess | rosgraph.ArrayLiteral) else []
-        return [*parts, (_REACH, (len(parts), reader))] if parts else [(_READ_VALUE, reader)]
+        reader, skipped = self._reader(reference), len(self._around)
+        parts: list[Any] = []
+        if isinstance(access, rosgraph.WireAccess | rosgraph.ArrayLiteral):
+            parts += operands(access)
+        if isinstance(access, rosgraph.WireAccess) and access.quantifier is not None:
+            reached = self._around.index(access.quantifier)
+            if not parts:
+                return [(_READ_VALUE, lambda *source: reader(source[reached], *source[skipped:]))]
+            parts.insert(0, (_READ_VALUE, lambda *source: source[reached]))
+        count = len(parts)
+        if skipped == 0:
+            return [*parts, (_REACH, (count, reader))] if parts else [(_READ_VALUE, reader)]
+        if not parts:
+            return [(_READ_VALUE, lambda *source: reader(*source[skipped:]))]
+        return [*parts, (_REACH, (count, lambda *context: reader(*context[:count], *context[count + skipped :])))]
 
 
-#: For each quantifier: its value for no elements, and the value of the body that ends the loop. If no value ends it,
-#: the loop counts the elements for which the body is true.
-_QUANTIFIERS: dict[str, tuple[bool | int, bool | None]] = {
-    "all": (True, False),
-    "any": (False, True),
-    "count": (0, None),
-}
+def _all(body: Program[Any], array: Any, *source: Any) -> bool:
+    return all(body(element, *source) for element in array)
 
 
-class _Loops:
-    """Loops over arrays during a run: the remaining elements of each array, and the current element."""
+def _any(body: Program[Any], array: Any, *source: Any) -> bool:
+    return any(body(element, *source) for element in array)
 
-    def __init__(self) -> None:
-        self._arrays: dict[Any, Any] = {}
-        self._elements: dict[Any, Any] = {}
 
-    def step(self, kind: int, argument: Any, stack: list[Any], position: int, source: Sequence[Any]) -> int:
-        """Run one instruction and return the position of the next one."""
-        if kind in {_CALL, _REACH}:
-            count, function = argument
-            behind = source if kind == _REACH else ()
-            stack[len(stack) - count :] = [function(*stack[len(stack) - count :], *behind)]
-        elif kind == _BOUND:
-            stack.append(self._elements[argument])
-        elif kind == _EACH:
-            quantifier, initial = argument
-            self._arrays[quantifier] = iter(stack[-1])
-            stack[-1] = initial
-        elif kind == _NEXT:
-            quantifier, end = argument
-            element = self._elements[quantifier] = next(self._arrays[quantifier], _NOTHING)
-            if element is _NOTHING:
-                return int(end.position)
-        else:
-            decided, start, end = argument
-            holds = bool(stack.pop())
-            stack[-1] = stack[-1] + holds if decided is None else holds
-            return int(end.position if holds is decided else start.position)
-        return position
+def _count(body: Program[Any], array: Any, *source: Any) -> int:
+    return sum(bool(body(element, *source)) for element in array)
+
+
+_QUANTIFIERS: dict[str, Callable[..., bool | int]] = {"all": _all, "any": _any, "count": _count}
 
 
 class _Label:
@@ -182,11 +169,7 @@ class _Label:
 
 
 #: Kinds of instructions. Each uses its argument and the values on the stack.
-_READ_VALUE, _CONSTANT, _UNARY, _BINARY, _DECIDE, _UNLESS, _JUMP, _CALL, _REACH, _BOUND, _EACH, _NEXT, _TALLY = range(
-    13
-)
-#: Marks the end of an array.
-_NOTHING = object()
+_READ_VALUE, _CONSTANT, _UNARY, _BINARY, _DECIDE, _UNLESS, _JUMP, _CALL, _REACH = range(9)
 
 
 def _if_readable(value: Program[Any], otherwise: Program[Any], *source: Any) -> Any:

@@ -30,6 +30,9 @@ class Middleware:
         for queue in self.queue.values():
             self.queues.add(queue)
 
+    def run_once(self) -> None:
+        self.queues.run_once(lambda: 1)
+
     def publish(self, topic: str, times: int = 1) -> None:
         for _ in range(times):
             self._sent[topic] += 1
@@ -63,11 +66,11 @@ def test_a_rare_message_comes_before_frequent_ones() -> None:
     ros = Middleware("scan", "button", "correction")
     ros.publish("scan", 30)
     ros.publish("correction", 5)
-    ros.queues.run_once(1)
+    ros.run_once()
     ros.handled.clear()
     ros.publish("correction")
     ros.publish("button")
-    ros.queues.run_once(1)
+    ros.run_once()
     assert ros.topics() == "bc" + MOST_AT_ONCE * "s"
 
 
@@ -75,14 +78,14 @@ def test_a_topic_that_was_frequent_once_is_rare_again() -> None:
     ros = Middleware("button", "scan")
     ros.publish("button", 1000)
     while len(ros.handled) < 1000:
-        ros.queues.run_once(1)
+        ros.run_once()
     for _ in range(100):
         ros.publish("scan", 2)
-        ros.queues.run_once(1)
+        ros.run_once()
     ros.handled.clear()
     ros.publish("scan", 3)
     ros.publish("button")
-    ros.queues.run_once(1)
+    ros.run_once()
     assert ros.topics() == "bsss"
 
 
@@ -94,7 +97,7 @@ def test_a_flood_on_one_topic_delays_others_by_one_turn() -> None:
     for _ in range(100):
         ros.publish("button")
         before = len(ros.handled)
-        ros.queues.run_once(1)
+        ros.run_once()
         gaps.append([topic for topic, _ in ros.handled[before:]].index("button"))
     assert max(gaps) <= MOST_AT_ONCE
     assert not any(gaps[1:])
@@ -107,8 +110,8 @@ def test_other_work_does_not_wait_behind_events_of_taken_messages() -> None:
     assert len(ros.handled) == 300
     done: list[str] = []
     ros.post(lambda: done.append("call"))
-    ros.queues.run_once(1)
-    ros.queues.run_once(1)
+    ros.run_once()
+    ros.run_once()
     assert done == ["call"]
     assert ros.waits[-1] == 1
 
@@ -121,8 +124,8 @@ def test_other_work_is_done_during_a_flood() -> None:
     for _ in range(100):
         done: list[str] = []
         ros.post(partial(done.append, "call"))
-        ros.queues.run_once(1)
-        ros.queues.run_once(1)
+        ros.run_once()
+        ros.run_once()
         assert done == ["call"]
 
 
@@ -131,11 +134,11 @@ def test_each_message_is_handled_once_and_in_order(times: int) -> None:
     ros = Middleware("scan", "button")
     for _ in range(5):
         ros.publish("scan", times)
-        ros.queues.run_once(1)
+        ros.run_once()
         ros.publish("button")
-        ros.queues.run_once(1)
+        ros.run_once()
     while ros.waits[-1] != 1:
-        ros.queues.run_once(1)
+        ros.run_once()
     assert [number for topic, number in ros.handled if topic == "scan"] == list(range(1, 5 * times + 1))
     assert [number for topic, number in ros.handled if topic == "button"] == list(range(1, 6))
 
@@ -168,8 +171,35 @@ def test_a_removed_queue_handles_what_it_stores() -> None:
 def test_an_executor_that_waits_for_all_at_once_is_called_once() -> None:
     waits: list[float] = []
     queues = MessageQueues(waits.append, None)
-    messages = deque([1, 2, 3])
+    messages = deque(range(MOST_AT_ONCE + 3))
     queues.add(MessageQueue(lambda _: None, lambda: messages.popleft() if messages else None, 5))
-    queues.run_once(1)
-    queues.run_once(1)
+    queues.run_once(lambda: 1)
+    queues.run_once(lambda: 1)
     assert waits == [0, 1]
+
+
+def test_a_message_costs_one_round() -> None:
+    """The executor waits again right after a message that it has taken."""
+    ros = Middleware("scan", "button")
+    rounds = 0
+
+    def pending() -> float:
+        nonlocal rounds
+        rounds += 1
+        return 1
+
+    ros.queues.run_once(pending)
+    for _ in range(5):
+        ros.queue["scan"].store(1)
+        ros.queues.run_once(pending)
+    assert (rounds, ros.waits) == (6, [1] * 6)
+
+
+def test_planned_work_is_done_during_a_flood() -> None:
+    ros = Middleware("scan", depth=5)
+    ros.hook = lambda: ros.publish("scan", 3)
+    ros.publish("scan", 3)
+    done: list[int] = []
+    for number in range(100):
+        ros.queues.run_once(lambda number=number: done.append(number) or 1)  # type: ignore[misc]
+    assert done == list(range(100))

@@ -52,6 +52,8 @@ class MessageQueues:
         self._spin_once = spin_once
         self._post = post
         self._queues: list[MessageQueue] = []
+        #: Whether a turn of the last round ended before its queue was empty.
+        self._full = False
         #: Whether messages were taken here whose events the executor may still have.
         self._behind = False
 
@@ -65,15 +67,17 @@ class MessageQueues:
         while queue.stored:
             queue.receive(queue.stored.popleft())
 
-    def run_once(self, wait: float) -> None:
-        """Give each queue a turn, then the executor. It waits at most these seconds if no message had arrived."""
-        handled = self._round()
-        if self._post is None:
-            self._spin_once(0 if handled else wait)
-        elif self._behind:
+    def run_once(self, pending: Callable[[], float]) -> None:
+        """Give each queue a turn, then do other work, then let the executor work.
+
+        `pending` does all work that is due and returns how many seconds the executor may wait for more.
+        """
+        self._round()
+        wait = pending()
+        if self._behind and self._post is not None:
             self._catch_up(self._post)
-        elif not handled:
-            self._spin_once(wait)
+        else:
+            self._spin_once(0 if self._full else wait)
 
     def _catch_up(self, post: Callable[[Callable[[], None]], object]) -> None:
         """Let the executor handle all events that it has now."""
@@ -93,7 +97,9 @@ class MessageQueues:
 
     def _round(self) -> int:
         """Give each queue a turn, those with the least traffic first; return the number of handled messages."""
-        return sum(map(self._turn, sorted(self._queues, key=lambda queue: queue.traffic)))
+        turns = [self._turn(queue) for queue in sorted(self._queues, key=lambda queue: queue.traffic)]
+        self._full = MOST_AT_ONCE in turns
+        return sum(turns)
 
     def _turn(self, queue: MessageQueue) -> int:
         handled = 0

@@ -203,11 +203,12 @@ class NodeData:
         """
         variable, is_inner = access.variable, access.quantifier is not None
         steps = list(map(self._step, access.steps))
+        if is_inner and not steps:
+            return lambda element, *_: element
 
         def reach(*context: Any) -> Any:
-            start = context[-1] if variable is None else self.variables[variable]
-            rest = iter(context if is_inner else (start, *context[:-1]))
-            reached = next(rest)
+            reached = context[0] if is_inner else context[-1] if variable is None else self.variables[variable]
+            rest = iter(context[1:] if is_inner else context)
             for step in steps:
                 reached = step(reached, rest)
             return reached
@@ -254,22 +255,24 @@ class NodeData:
         if value is BLANK and kind is not None:
             blank: Value = _BLANK[type(kind)]
             return blank
-        match kind:
-            case rosgraph.ArrayType():
-                return [self.leaf(element, kind.element) for element in value]
-            case ex.IntegerType():
-                return fit(value[0] if isinstance(value, bytes) else int(value))
-            case ex.DoubleType():
-                return as_double(float(value))
-            case ex.BooleanType():
-                return bool(value)
-        return value  # type: ignore[no-any-return]
+        if isinstance(kind, rosgraph.ArrayType):
+            return [self.leaf(element, kind.element) for element in value]
+        convert = _CONVERSIONS.get(type(kind))
+        return value if convert is None else convert(value)
 
     def _variable(self, variable: sct.DiscreteVariable) -> Value:
         value = self._engine.value(variable)
         if isinstance(variable.type, ex.EnumerationType):
             return next(literal for literal in variable.type.enumeration.literals if literal.name == value)
         return value
+
+
+#: Conversions of values of ROS to those of the model.
+_CONVERSIONS: dict[type, Callable[[Any], Value]] = {
+    ex.IntegerType: lambda value: fit(value[0] if isinstance(value, bytes) else int(value)),
+    ex.DoubleType: float,
+    ex.BooleanType: bool,
+}
 
 
 def within_range(value: Value, kind: ex.Type) -> Value:

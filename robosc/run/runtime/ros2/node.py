@@ -190,9 +190,12 @@ class Ros2Node(RunningNode):
         return bool(rclpy.ok())
 
     def _spin_once(self) -> None:
+        self._queues.run_once(self._run_pending)
+
+    def _run_pending(self) -> float:
+        """Make the calls that are due; return how many seconds the executor may wait."""
         left = self.event_loop.run_pending()
-        wait = LONGEST_WAIT if left is None or self.simulated else min(left, LONGEST_WAIT)
-        self._queues.run_once(wait)
+        return LONGEST_WAIT if left is None or self.simulated else min(left, LONGEST_WAIT)
 
     def wake(self) -> None:
         self._executor.create_task(lambda: None)
