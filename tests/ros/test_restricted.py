@@ -151,6 +151,28 @@ def test_a_layer_limits_and_judges_what_the_controller_sent(layers: Workspace | 
     assert events_of(log, "outside") == [VELOCITY] * 3
 
 
+def test_a_blocked_request_leaves_the_data_of_a_layer(layers: Workspace | Runner, tmp_path: Path) -> None:
+    """The layer counts the requests that it sends; a limit shows the count."""
+    name, kind = "hauler_layer", "std_srvs/SetBool"
+    with middleware(layers, tmp_path / "run") as processes:
+        world = Peer(processes, layers.ros.python, layers.ros.version, "world")
+        robot, inside = Hauler(world, processes, name), f"/{name}/controller"
+        world.do("serve", name="/tare", kind=kind)
+        world.do("answer_at_once", fields={"success": True})
+        robot.listen(COMMANDS | {f"/{name}/blocked": "std_msgs/String"})
+        processes.start("node", _node(layers, name, "layer-config.json", tmp_path / "events.jsonl", layer=True))
+        robot.advertise({f"{inside}/velocity": COMMANDS["/velocity"]})
+        for speed, permitted in enumerate((False, True, False)):
+            number = world.do("call", name=f"{inside}/tare", kind=kind, fields={"data": permitted})
+            assert world.wait("answered", value=number)["data"]["success"] is permitted
+            robot.send(f"{inside}/velocity", linear={"x": float(speed)})
+            robot.until_driven((float(speed), 0.0))
+        processes.wait_until(lambda: len(robot.blocked("Base.tare")) == 2, "two requests are blocked")
+        assert robot.blocked("Base.tare") == [("requirement", ["requirement tare needs value.data"])] * 2
+        assert [data["linear"]["z"] for data in robot.heard("/velocity")] == [0.0, 0.25, 0.25]
+        assert len(world.all("called")) == 1
+
+
 def test_a_violation_while_a_managed_node_is_inactive(ros2_workspace: Workspace, tmp_path: Path) -> None:
     with middleware(ros2_workspace, tmp_path / "run") as processes:
         world = Peer(processes, ros2_workspace.ros.python, 2, "world")
