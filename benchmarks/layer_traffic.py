@@ -3,22 +3,22 @@
     python3 layer_traffic.py send HZ TOPIC...
     python3 layer_traffic.py receive FILE TOPIC...
 
-The sender publishes a velocity on each of the topics HZ times a second, evenly spread, and the sensors of a guarded
-base 10 times a second. Every second it moves an obstacle into or out of the scan. A velocity has the time of its
+The sender publishes a velocity on each of the topics HZ times a second, evenly spread, but only a tenth of them on the
+last topic. It publishes the sensors of a guarded base 10 times a second. Every second it moves an obstacle into or out of the scan. A velocity has the time of its
 publication in `angular.x`. The receiver ends at an interrupt. FILE then has three numbers for each velocity, all
 doubles: the number of its topic, the time of its receipt, and the seconds since its publication.
 """
 
+import signal
 import sys
 import time
 from array import array
-from contextlib import suppress
 from pathlib import Path
 
 import rclpy
 from geometry_msgs.msg import Twist
-from rclpy.executors import ExternalShutdownException
 from rclpy.qos import qos_profile_sensor_data
+from rclpy.signals import SignalHandlerOptions
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Bool
 
@@ -27,7 +27,7 @@ try:
 except ImportError:
     from rclpy.executors import SingleThreadedExecutor as Executor
 
-#: Velocities between two messages of the sensors are counted: these are sent 10 times a second.
+#: Rate of the sensors.
 SENSORS_HZ = 10
 
 
@@ -38,7 +38,7 @@ def send(hz, *topics):
     buttons = node.create_publisher(Bool, "/emergency_stop", 10)
     scan, velocity = LaserScan(), Twist()
     velocity.linear.x = velocity.angular.z = 0.5
-    step = 1 / float(hz) / len(publishers)
+    step = 1 / float(hz) / (len(publishers) - 0.9)
     every = round(float(hz) / SENSORS_HZ)
     due, number = time.monotonic(), 0
     while True:
@@ -46,7 +46,7 @@ def send(hz, *topics):
             scan.ranges = [0.4 if number // every // SENSORS_HZ % 2 else 2.0] * 360
             scans.publish(scan)
             buttons.publish(Bool())
-        for publisher in publishers:
+        for publisher in publishers if number % 10 == 0 else publishers[:-1]:
             due += step
             time.sleep(max(0.0, due - time.monotonic()))
             velocity.angular.x = time.monotonic()
@@ -72,14 +72,14 @@ def receive(file, *topics):
             node.create_subscription(kind, f"/{name}/controller/{topic}", lambda _: None, 10)
     executor = Executor()
     executor.add_node(node)
-    with suppress(KeyboardInterrupt, ExternalShutdownException):
-        executor.spin()
+    ended = []
+    signal.signal(signal.SIGINT, lambda *_: ended.append(True))
+    while not ended:
+        executor.spin_once(timeout_sec=0.1)
     Path(file).write_bytes(received.tobytes())
 
 
 if __name__ == "__main__":
-    rclpy.init()
-    try:
-        {"send": send, "receive": receive}[sys.argv[1]](*sys.argv[2:])
-    except (KeyboardInterrupt, ExternalShutdownException):
-        sys.exit(0)
+    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    {"send": send, "receive": receive}[sys.argv[1]](*sys.argv[2:])

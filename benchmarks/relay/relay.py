@@ -3,12 +3,12 @@
 python3 relay.py
 """
 
-import sys
+import signal
 
 import rclpy
 from geometry_msgs.msg import Twist
-from rclpy.executors import ExternalShutdownException
 from rclpy.qos import qos_profile_sensor_data
+from rclpy.signals import SignalHandlerOptions
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Bool
 
@@ -19,7 +19,8 @@ except ImportError:
 
 
 def main():
-    rclpy.init()
+    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
     node = rclpy.create_node("plain_relay")
     for kind, source, target, received in (
         (Twist, "~/controller/cmd_vel", "~/cmd_vel", 10),
@@ -30,11 +31,9 @@ def main():
         node.create_subscription(kind, source, publisher.publish, received)
     executor = Executor()
     executor.add_node(node)
-    executor.spin()
+    while True:
+        executor.spin_once(timeout_sec=0.1)
 
 
 if __name__ == "__main__":
-    try:
-        main()
-    except (KeyboardInterrupt, ExternalShutdownException):
-        sys.exit(0)
+    main()
