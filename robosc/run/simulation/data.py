@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from contextlib import suppress
-from functools import partial
+from functools import partial, reduce
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robosc.base.ros_types import WireType
@@ -29,7 +29,7 @@ from robosc.run.simulation.unreadable import Unreadable, past_end
 from robosc.run.simulation.wire_fit import DIGITS, WireFit, in_short, place
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from robosc.base.ros_types import RosTypes
     from robosc.engine import Engine
@@ -478,6 +478,9 @@ class _JsonData(NodeData):
         name = argument.value if isinstance(argument, _EventValues) else None
         named = (literal for literal in conversion.enumeration.literals if literal.name == name)
         return next(named, None) or super().convert(conversion, argument)
+
+    def _fields(self, names: Sequence[str]) -> Callable[[_EventValues], _EventValues]:
+        return lambda data: reduce(self._field, names, data)
 
     def _field(self, owner: _EventValues, name: str) -> _EventValues:
         value = owner.value

@@ -106,6 +106,7 @@ class EventHandler:
         self._warn = Throttle(port.warn, event_loop.clock)
         self._err = Throttle(port.error, event_loop.clock)
         self._events = {event_name(event): event for plant in graph.model.plants for event in plant.events}
+        self._names = {event: name for name, event in self._events.items()}
         self._incoming = self._of_role(engine.Role.incoming)
         #: Goals of the actions, by the event that cancels them.
         self.goals: dict[sct.Event, Goals] = {}
@@ -297,7 +298,7 @@ class EventHandler:
         The reason is a ViolationError if an assumption excludes the event. `source` is the event that the message came
         with; None means the event itself.
         """
-        if not self._control.enabled(event_name(event)):
+        if not self._control.enabled(self._names[event]):
             violation = self._violations.check(event)
             if violation is not None:
                 logged = self._logged[event].read(self._data, message) if self._log.active else None
@@ -319,7 +320,7 @@ class EventHandler:
         inputs: Mapping[str, Any] | None = None,
     ) -> None:
         self._received = received
-        self._control.perform(event_name(event), inputs)
+        self._control.perform(self._names[event], inputs)
         self._received = None
 
     def _changes(self, event: sct.Event) -> bool:
@@ -351,9 +352,10 @@ class EventHandler:
         event = self._events[name]
         data = self._logged_data(event) if self._log.active else None
         direction, data = self._act(event) or ("in" if event in self._incoming else "internal", data)
-        self._log.write(self._port.now(), direction, name, data)
-        if lost := self._log.lost():
-            self._port.warn(f"the event log lost {lost} events")
+        if self._log.active:
+            self._log.write(self._port.now(), direction, name, data)
+            if lost := self._log.lost():
+                self._port.warn(f"the event log lost {lost} events")
         self._reports.add_transition(name)
 
     def _act(self, event: sct.Event) -> tuple[str, Mapping[str, Json] | None] | None:

@@ -84,7 +84,7 @@ class Layer(EventHandler):
 
     def _passes(self, sending: rosgraph.Sending, inputs: Mapping[str, Any]) -> bool:
         """Perform the event of a controller's command and return True; report it as blocked if it is not allowed."""
-        name, engine = event_name(sending.event), self._control.engine
+        name, engine = self._names[sending.event], self._control.engine
         engine.set_inputs(name, inputs)
         with self._times:
             # The node's own data change only if the command happens.

@@ -8,6 +8,7 @@ import struct
 from collections.abc import Iterable, Sequence
 from copy import deepcopy
 from functools import partial
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robosc.base.ros_types.wire import INTEGER_RANGES
@@ -202,9 +203,13 @@ class NodeData:
         The function raises UnreadableError.
         """
         variable, is_inner = access.variable, access.quantifier is not None
-        steps = list(map(self._step, access.steps))
-        if is_inner and not steps:
+        if is_inner and not access.steps:
             return lambda element, *_: element
+        names = [step.name for step in access.steps if isinstance(step, rosgraph.FieldStep)]
+        if names and len(names) == len(access.steps) and variable is None and not is_inner:
+            read = self._fields(names)
+            return lambda *context: read(context[-1])
+        steps = list(map(self._step, access.steps))
 
         def reach(*context: Any) -> Any:
             reached = context[0] if is_inner else context[-1] if variable is None else self.variables[variable]
@@ -236,6 +241,10 @@ class NodeData:
         for step in path:
             data = self._element(data, int(step)) if step.isdigit() else self._field(data, step)
         return data
+
+    def _fields(self, names: Sequence[str]) -> Callable[[Any], Any]:
+        """Return the function that reads a field, of a field, and so on, of data that came in."""
+        return attrgetter(".".join(names))
 
     def _field(self, owner: Any, name: str) -> Any:
         return getattr(owner, name)
