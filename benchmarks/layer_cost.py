@@ -7,6 +7,8 @@ third topic leads from the sender to the receiver without a node between them. A
 while an obstacle is near. The relay of a compiled layer is in C++, that of `robosc run` in Python. The rounds are
 printed, with the average load of the machine; their measurements are stored in `benchmarks/performance.json`.
 
+On a busy machine, start the measurement with `chrt -f 5`, so that other programs do not delay the messages.
+
 The compiled nodes need an rclcpp in AMENT_PREFIX_PATH, `run` the environment that `./run-tests` creates. Both compiled
 nodes have the flags in CXXFLAGS, by default `-O2`.
 """

@@ -4,9 +4,10 @@
     python3 layer_traffic.py receive FILE TOPIC...
 
 The sender publishes a velocity on each of the topics HZ times a second, evenly spread, but only a tenth of them on the
-last topic. It publishes the sensors of a guarded base 10 times a second. Every second it moves an obstacle into or out of the scan. A velocity has the time of its
-publication in `angular.x`. The receiver ends at an interrupt. FILE then has three numbers for each velocity, all
-doubles: the number of its topic, the time of its receipt, and the seconds since its publication.
+last topic. It publishes the sensors of a guarded base 10 times a second. Every second it moves an obstacle into or out
+of the scan. A velocity has the time of its publication in `angular.x`. The receiver ends at an interrupt. FILE then has
+three numbers for each velocity, all doubles: the number of its topic, the time of its receipt, and the seconds since
+its publication.
 """
 
 import signal

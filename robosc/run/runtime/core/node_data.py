@@ -207,8 +207,8 @@ class NodeData:
             return lambda element, *_: element
         names = [step.name for step in access.steps if isinstance(step, rosgraph.FieldStep)]
         if names and len(names) == len(access.steps) and variable is None and not is_inner:
-            read = self._fields(names)
-            return lambda *context: read(context[-1])
+            field = self._fields(names)
+            return lambda *context: field(context[-1])
         steps = list(map(self._step, access.steps))
 
         def reach(*context: Any) -> Any:
