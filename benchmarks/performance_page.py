@@ -117,9 +117,12 @@ LAYER = """\
 
 A [supervisory layer](layer.md) and a plain relay forward {hz} velocities a second each, at the same time. The table
 shows the latency from publication to receipt in milliseconds, and the processor time per velocity. The relay of a
-compiled layer is a node in C++, that of `robosc run` a node in Python. *Direct* is the latency without a node between.
+compiled layer is a node in C++, that of `robosc run` a node in Python. Compiled nodes are optimized (`-O2`). *Direct*
+is the latency without a node between.
 
 {table}
+Median latency and processor time of the layer, divided by those of the relay: {ratios}.
+
 The layer limits the velocities, reads two of their fields for requirements, and handles ten scans of 360 rays and ten
 messages of an emergency stop each second. The relay forwards the same messages.
 """
@@ -170,7 +173,7 @@ def page(results: Results, before: str = "") -> str:
         parts.append(WATCHED.format(most=share, kinds="; ".join(kind.title for kind in seen)))
     if layer:
         hz = _span(f"{measured['hz']:,}" for measured in layer.values())
-        parts.append(LAYER.format(hz=hz, table=_layer(layer)))
+        parts.append(LAYER.format(hz=hz, table=_layer(layer), ratios="; ".join(map(_ratios, layer, layer.values()))))
     old = re.split(r"(?m)^(?=## )", before)[1:]
     sections = {section.partition("\n")[0]: section.strip() + "\n" for section in [*old, *parts[1:]]}
     titles = [text.partition("\n")[0] for text in (REACTION, FAST, COSTS, WATCHED, LAYER)]
@@ -252,3 +255,10 @@ def _layer(layer: Mapping[Kind, Results]) -> str:
             processor = f"{values['processor']:.0f} µs" if "processor" in values else ""
             rows.append([f"{kind.title}: {way}", f"{values['median']:.2f}", f"{values['p99']:.2f}", processor])
     return _table(["node", "median", "p99", "processor"], rows)
+
+
+def _ratios(kind: Kind, measured: Results) -> str:
+    median_ratio, processor_ratio = (
+        measured["layer"][name] / measured["relay"][name] for name in ("median", "processor")
+    )
+    return f"{kind.title} {median_ratio:.2f} and {processor_ratio:.2f}"

@@ -160,6 +160,20 @@ def test_leaves_out_what_is_not_asked_for(usher: robosc.Models, tmp_path: Path) 
     }
 
 
+@pytest.mark.parametrize(
+    ("model", "node"),
+    [
+        ("run/runtime/guard", "GuardedNode<rclcpp::Node>"),
+        ("ros/ends/carrier", "GuardedNode<rclcpp::Node>"),
+        ("ros/blocked/hoist", "GuardedNode<rclcpp::Node, kSlowBeat>"),
+    ],
+)
+def test_a_node_without_countdowns_wakes_rarely(model: str, node: str) -> None:
+    models = models_of(HERE.parents[1] / f"{model}.rscd")
+    (text,) = (text for name, text in robosc.generate(TARGET, models).items() if name.endswith("_node.cpp"))
+    assert f"class Layer : public {node} {{" in text
+
+
 def test_quality_of_service(usher: robosc.Models) -> None:
     chosen = {
         "speed": {"reliability": "best_effort", "depth": 3},

@@ -16,8 +16,10 @@
 namespace robosc {
 inline namespace ROBOSC_VERSION {
 
-/// The interval between beats of a node, in which its countdowns expire.
-inline constexpr std::chrono::milliseconds kBeat(10);
+/// Milliseconds between the beats of a node, in which its countdowns expire.
+inline constexpr int kBeat = 10;
+/// The same for a node without countdowns, which only looks at the ROS graph. Each beat costs as much as a message.
+inline constexpr int kSlowBeat = 50;
 /// The interval between checks of a condition.
 inline constexpr std::chrono::milliseconds kLook(20);
 

@@ -28,8 +28,8 @@ void part(Group& group) {
   }
 }
 
-/// A node without callbacks after its end.
-template <typename Node>
+/// A node without callbacks after its end. `Beat`: milliseconds between the beats of its guards.
+template <typename Node, int Beat = kBeat>
 class GuardedNode : public Node {
  public:
   /// The name of the node with its namespace. Managed nodes of Humble have no such function.
@@ -44,7 +44,7 @@ class GuardedNode : public Node {
   GuardedNode(const std::string& name, const rclcpp::NodeOptions& options, More... more)
       : Node(name, rclcpp::NodeOptions(options).start_parameter_services(false), more...) {
     if (options.start_parameter_services()) serve_parameters(services_, *this, services_guard_);
-    beats_ = this->create_wall_timer(kBeat, services_guard_([this] { guard_.beat(); }));
+    beats_ = this->create_wall_timer(std::chrono::milliseconds(Beat), services_guard_([this] { guard_.beat(); }));
   }
 
   /// Closes the node. Call it first in the destructor of a derived class: executors may call back until this returns.
