@@ -95,6 +95,16 @@ class _Command:
         ]
 
 
+def _copied(command: _Command, message: Message) -> Message:
+    """Return a message for the limits of a command to change: they leave the original as it is."""
+    if command.limits:
+        message = copy(message)
+        for *owners, name in command.changed:
+            owner = reduce(getattr, owners, message)
+            setattr(owner, name, copy(getattr(owner, name)))
+    return message
+
+
 @dataclass(frozen=True)
 class Composer:
     """Create data of ROS with a port. `data`: the data of the node."""
@@ -144,11 +154,7 @@ class Composer:
         Raises NotFiniteError or UnreadableError if the limits can't be computed.
         """
         command = self._command(sending)
-        if command.limits:
-            message = copy(message)
-            for *owners, name in command.changed:
-                owner = reduce(getattr, owners, message)
-                setattr(owner, name, copy(getattr(owner, name)))
+        message = _copied(command, message)
         self._limit(command, message, {})
         return message
 
@@ -157,8 +163,9 @@ class Composer:
 
         Raises NotFiniteError or UnreadableError if the limits can't be computed.
         """
+        command = self._command(sending)
         fields: dict[Path, Json] = {}
-        self._limit(sending, deepcopy(message) if sending.limits else message, fields)
+        self._limit(command, _copied(command, message), fields)
         return fields
 
     def inputs(self, sending: rosgraph.Sending, message: Message) -> dict[str, Any]:
