@@ -202,7 +202,8 @@ def _guard_choices(name: str, options: dict[str, Any], *, asks: bool) -> GuardCh
 def _checked_commands(name: str, choice: str, answer: str) -> tuple[str, ...]:
     """Return the commands of an answer. Raises UsageError for a fault, so that the prompt repeats."""
     commands = () if answer == _NONE else tuple(answer.split())
-    fault = GuardChoices(name, **{choice: commands}).fault() if commands else None
+    chosen: dict[str, Any] = {choice: commands}
+    fault = GuardChoices(name, **chosen).fault() if commands else None
     if fault is not None:
         raise click.UsageError(fault)
     return commands
