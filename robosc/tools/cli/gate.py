@@ -50,7 +50,8 @@ _ADDRESS = "127.0.0.1"
     type=click.IntRange(1, 16),
     default=1,
     show_default=True,
-    help="Number of tokens for --http, one a client.",
+    metavar="N",
+    help="Number of tokens for --http, one for each client.",
 )
 @click.option("--log", type=click.Path(), help="The log of all calls.  [default: a file in the log folder of ROS]")
 @click.option(
@@ -58,7 +59,8 @@ _ADDRESS = "127.0.0.1"
     type=click.FloatRange(0, 1000, min_open=True),
     default=20.0,
     show_default=True,
-    help="Calls of a tool a second.",
+    metavar="N",
+    help="Most calls of a tool in a second.",
 )
 @click.option(
     "--total-rate",
@@ -66,7 +68,8 @@ _ADDRESS = "127.0.0.1"
     type=click.FloatRange(0, 1000, min_open=True),
     default=50.0,
     show_default=True,
-    help="Calls of all tools a second.",
+    metavar="N",
+    help="Most calls of all tools in a second.",
 )
 @click.option(
     "--largest",

@@ -49,7 +49,7 @@ def command(output: str | None) -> None:
     """Write the nodes of the running ROS 2 system with their topics, services and actions, as JSON.
 
     `verify --guard` and `new --from-graph` read the file without ROS. The command waits until the graph has not changed
-    for two seconds.
+    for four seconds.
 
     \b
     Examples:

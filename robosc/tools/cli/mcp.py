@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     type=click.FloatRange(min=1),
     default=120,
     show_default=True,
-    help="The time limit of a call, in seconds.",
+    metavar="SECONDS",
+    help="The time limit of a call.",
 )
 @memory
 @paths

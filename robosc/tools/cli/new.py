@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -187,8 +188,8 @@ def _guard_choices(name: str, options: dict[str, Any], *, asks: bool) -> GuardCh
         for choice, question in _GUARD_QUESTIONS.items():
             if not options[choice]:
                 default = " ".join(chosen[choice] or ()) or (_TOPIC if choice == "topics" else _NONE)
-                answer = click.prompt(question, default=default, err=True)
-                chosen[choice] = () if answer == _NONE else tuple(answer.split())
+                checked = partial(_checked_commands, name, choice)
+                chosen[choice] = click.prompt(question, default=default, value_proc=checked, err=True)
         if not chosen["pose"] and chosen["actions"]:
             chosen["pose"] = click.prompt(_POSE_QUESTION, default=_NONE, err=True)
     choices = _check_guard(name, chosen)
@@ -196,6 +197,16 @@ def _guard_choices(name: str, options: dict[str, Any], *, asks: bool) -> GuardCh
     if fault is not None:
         raise CallError(fault)
     return choices
+
+
+def _checked_commands(name: str, choice: str, answer: str) -> tuple[str, ...]:
+    """Return the commands of an answer. Raises UsageError for a fault, so that the prompt repeats."""
+    commands = () if answer == _NONE else tuple(answer.split())
+    chosen: dict[str, Any] = {choice: commands}
+    fault = GuardChoices(name, **chosen).fault() if commands else None
+    if fault is not None:
+        raise click.UsageError(fault)
+    return commands
 
 
 def _check_guard(name: str, chosen: dict[str, Any]) -> GuardChoices:

@@ -15,7 +15,7 @@ from robosc.base.ros_types import DefinitionError, Section
 from robosc.base.ros_types.wire import NestedType
 from robosc.model.semantics.roles import plant_of
 from robosc.run.node_tests.messages import new_object, new_value
-from robosc.run.runtime.core.event_loop import EventLoop
+from robosc.run.runtime.core.event_loop import EventLoop, Timer
 from robosc.run.runtime.core.node import LONGEST_WAIT, RunningNode
 from robosc.run.runtime.core.port import CancelAnswer, GoalOutcome
 from robosc.tools.gate.commands import UnknownTypeError
@@ -340,19 +340,22 @@ class ScriptError(Exception):
 
 @dataclass(frozen=True)
 class Step:
-    """Step of a script: seconds after the start, the event, and its data."""
+    """Step of a script: seconds after the start, the event, its data, and seconds between repetitions or None."""
 
     time: float
     event: RobotEvent
     data: Mapping[str, Any]
+    every: float | None
 
 
 def read_script(path: str, events: Mapping[str, RobotEvent]) -> list[Step]:
     """Return the steps of a script, `{"after": 0.5, "event": "Lidar.scan", "data": {...}}` a line.
 
-    `after` counts in seconds from the step before. Raises ScriptError and OSError.
+    `after` counts in seconds from the step before. With `every`, the step repeats after so many seconds, until a later
+    step with the same event. Raises ScriptError and OSError.
     """
-    words = {"after": Number(0, 86_400, "d"), "event": Choice(tuple(events)), "data": Anything()}
+    seconds, pause = Number(0, 86_400, "d"), Number(0.01, 86_400, "d")
+    words = {"after": seconds, "every": pause, "event": Choice(tuple(events)), "data": Anything()}
     shape, steps, faults, now = Fields(words, ("event",)), list[Step](), list[str](), 0.0
     for number, line in enumerate(read(path).decode("utf-8", errors="replace").splitlines(), 1):
         if not line.strip():
@@ -367,7 +370,7 @@ def read_script(path: str, events: Mapping[str, RobotEvent]) -> list[Step]:
             event, data = events[entry["event"]], entry.get("data", {})
             wrong = faults_of(event.shape, data)
             now += entry.get("after", 0)
-            steps.append(Step(now, event, {} if wrong else event.shape.converted(data)))
+            steps.append(Step(now, event, {} if wrong else event.shape.converted(data), entry.get("every")))
         faults += [f"{path}:{number}: {fault}" for fault in wrong]
     if faults:
         raise ScriptError("\n".join(faults))
@@ -376,11 +379,19 @@ def read_script(path: str, events: Mapping[str, RobotEvent]) -> list[Step]:
 
 def play(node: DryNode, steps: Sequence[Step]) -> None:
     """Plan the steps of a script; call this in the event loop's thread."""
+    repetitions: dict[str, Timer] = {}
+
+    def begin(step: Step) -> None:
+        if (repetition := repetitions.pop(step.event.name, None)) is not None:
+            repetition.cancel()
+        happen(step)
 
     def happen(step: Step) -> None:
+        if step.every is not None:
+            repetitions[step.event.name] = node.event_loop.call_later(step.every, partial(happen, step))
         trouble = step.event.cause(step.data)
         if trouble is not None:
             node.warn(f"{step.event.name} is impossible: {trouble}")
 
     for step in steps:
-        node.event_loop.call_later(step.time, partial(happen, step))
+        node.event_loop.call_later(step.time, partial(begin, step))

@@ -192,9 +192,10 @@ def test_options_that_do_not_fit_are_rejected(run: Run, tmp_path: Path, graph: P
 def test_a_terminal_asks_for_commands(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, graph: Path) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(new, "_on_terminal", lambda: True)
-    answers = "/cmd_vel:geometry_msgs/Twist /led:std_msgs/Bool\n-\n/go:nav2_msgs/NavigateToPose\n/amcl_pose\n"
+    answers = "/cmd_vel\n/cmd_vel:geometry_msgs/Twist /led:std_msgs/Bool\n-\n/go:nav2_msgs/NavigateToPose\n/amcl_pose\n"
     done = CliRunner().invoke(main, ["new", "Porter", "--guard"], input=answers, catch_exceptions=False)
     assert done.exit_code == 0, done.stderr
+    assert "`/cmd_vel` is not NAME:TYPE of a topic" in done.stderr
     assert identifiers(tmp_path) == ["/amcl_pose", "/cmd_vel", "/led", "/go"]
     call = ["new", "Porter", "--guard", "--from-graph", str(graph), "-o", "second"]
     done = CliRunner().invoke(main, call, input="\n\n\n\n", catch_exceptions=False)

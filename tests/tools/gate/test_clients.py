@@ -9,7 +9,8 @@ import re
 import subprocess
 import sys
 from contextlib import asynccontextmanager, contextmanager
-from typing import TYPE_CHECKING, Any
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any, cast
 
 import httpx2
 import pytest
@@ -17,12 +18,17 @@ from click.testing import CliRunner
 from mcp import Client, StdioServerParameters
 from mcp.client.streamable_http import streamable_http_client
 
+from robosc.run.runtime.core.event_loop import EventLoop
 from robosc.tools.cli import main
+from robosc.tools.gate.dry import RobotEvent, play, read_script
+from robosc.tools.gate.shapes import Fields, Flag
 from tests.tools.gate.bench import CONFIGURATION, PORTER, call
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Iterator, Sequence
     from pathlib import Path
+
+    from robosc.tools.gate.dry import DryNode
 
 _PATIENCE = 60
 
@@ -51,6 +57,25 @@ def test_a_client_on_standard_input(tmp_path: Path) -> None:
 
     asyncio.run(drive())
     assert [entry["verdict"] for entry in calls(tmp_path)] == ["refused", "happened", "accepted", "released"]
+
+
+def test_a_script_repeats_an_event_until_its_next_line(tmp_path: Path) -> None:
+    caused: list[Any] = []
+    event = RobotEvent("Person.seen", Fields({"data": Flag()}), caused.append)
+    script = tmp_path / "script.jsonl"
+    script.write_text(
+        '{"event": "Person.seen", "data": {"data": true}, "every": 0.25}\n'
+        '{"after": 0.9, "event": "Person.seen", "data": {"data": false}}\n',
+        encoding="utf-8",
+    )
+
+    clock = [0.0]
+    loop = EventLoop(lambda: clock[0])
+    play(cast("DryNode", SimpleNamespace(event_loop=loop)), read_script(str(script), {event.name: event}))
+    for tick in range(12):
+        clock[0] = tick * 0.25
+        loop.run_pending()
+    assert caused == [*[{"data": True}] * 4, {"data": False}]
 
 
 def test_raw_lines_on_standard_input(tmp_path: Path) -> None:
@@ -194,13 +219,15 @@ def refused(*words: str) -> str:
 def test_all_faults_of_a_script_are_reported(tmp_path: Path) -> None:
     script = tmp_path / "script.jsonl"
     script.write_text(
-        '{"event": "Person"}\n\n{"event": "Person.seen", "data": {"data": 1}}\n{"after": -1}\n{\n', encoding="utf-8"
+        '{"event": "Person"}\n\n{"event": "Person.seen", "data": {"data": 1}}\n{"after": -1, "every": 0}\n{\n',
+        encoding="utf-8",
     )
     errors = refused(*command(tmp_path, "--script", str(script)))
     for fault in (
         "1: event is not one of: Person.seen,",
         "3: data is a number, expected true or false",
         "4: after is not between 0 and 86400",
+        "4: every is not between 0.01 and 86400",
         "4: event is missing",
         "5: ",
     ):

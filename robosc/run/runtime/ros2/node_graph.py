@@ -15,13 +15,14 @@ if TYPE_CHECKING:
 
 _NAME = "robosc_graph"
 #: Seconds between two looks at the graph, seconds without a change until it is complete, and seconds at most.
-_LOOK, _QUIET, _LONGEST = 0.2, 2.0, 15.0
+#: Nodes announce themselves again every 3 s, so a busy computer may show nothing new for that long.
+_LOOK, _QUIET, _LONGEST = 0.2, 4.0, 15.0
 #: Part of the name of a node that the middleware has not discovered yet.
 _UNKNOWN = "UNKNOWN"
 
 
 def read_running() -> NodeGraph:
-    """Return the graph as soon as it has not changed for two seconds, or after 15 s.
+    """Return the graph as soon as it has not changed for four seconds, or after 15 s.
 
     The reader itself is left out. Raises StartError if ROS 2 does not start.
     """

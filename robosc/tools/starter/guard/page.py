@@ -32,17 +32,17 @@ requirements on it hold.
 ## Check it
 
 ```sh
-robosc check {stem}.rscd                     # errors and warnings
-robosc verify {stem}.rscd                    # proofs of the requirements
-robosc test {stem}.rscd {stem}.scenarios     # the scenarios
+robosc check {stem}.rscd  # errors and warnings
+robosc verify {stem}.rscd  # proofs of the requirements
+robosc test {stem}.rscd {stem}.scenarios  # the scenarios
 ```
 
 ## On the robot
 
 ```sh
-robosc run {stem}.rscd --layer               # the layer, without a build
-robosc graph -o graph.json                   # the running ROS graph
-robosc verify {stem}.rscd --guard graph.json # commands that go around the layer
+robosc run {stem}.rscd --layer  # the layer, without a build
+robosc graph -o graph.json  # the running ROS graph
+robosc verify {stem}.rscd --guard graph.json  # commands that go around the layer
 ```
 
 Your programs send to the names in the table above. `robosc transform {stem}.rscd --to ros2-layer` writes a package
