@@ -132,6 +132,8 @@ def command(
     judge = judge_of(models, settings, recording, judgement)
     fault = run(judge)
     audit = judge.audit
+    if fault and audit.end is None:
+        raise CallError(fault)
     if as_object:
         put(json.dumps(audit.as_json(), indent=2))
     else:
