@@ -36,7 +36,7 @@ _EVENTS = {
     sct.EventKind.reply: "response to {}",
     sct.EventKind.replyFeedback: "feedback to {}",
     sct.EventKind.replyError: "error to {}",
-    sct.EventKind.replyCanceled: "canceled to {}",
+    sct.EventKind.replyCanceled: "answer `canceled` to {}",
 }
 #: Events of transitions without communication: their names do not identify the text that they come from.
 _OWN = (sct.EventKind.tau, sct.EventKind.timeout)
