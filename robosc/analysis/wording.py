@@ -36,7 +36,7 @@ _EVENTS = {
     sct.EventKind.reply: "response to {}",
     sct.EventKind.replyFeedback: "feedback to {}",
     sct.EventKind.replyError: "error to {}",
-    sct.EventKind.replyCanceled: "canceled to {}",
+    sct.EventKind.replyCanceled: "answer `canceled` to {}",
 }
 #: Events of transitions without communication: their names do not identify the text that they come from.
 _OWN = (sct.EventKind.tau, sct.EventKind.timeout)
@@ -168,7 +168,7 @@ def _data(input_name: str, chosen: Value, event: sct.Event) -> str:
     """Return a piece of an event's data, or the node's computation on it, as the model writes it."""
     computed = next((carried.text for carried in event.inputs if carried.name == input_name), None)
     if computed is None:
-        name = input_name.removeprefix(f"i_{event.kind.name}").removeprefix("_") or "value"
+        name = input_name.removeprefix(f"i_{event.name.partition('_')[2]}").removeprefix("_") or "value"
         return f"{name} = {text(chosen)}"
     return computed if chosen is True else f"!({computed})" if chosen is False else f"{computed} = {text(chosen)}"
 

@@ -5,11 +5,13 @@ from pathlib import Path
 from click.testing import CliRunner
 
 import robosc
+from robosc.analysis.paths import TraceStep
 from robosc.analysis.supervise import supervise
-from robosc.analysis.wording import describe_event
+from robosc.analysis.wording import describe_event, in_words
 from robosc.language.configuration import Configuration
 from robosc.m2t import cif, supervisor
 from robosc.m2t.models import Models
+from robosc.model import sct
 from robosc.model.semantics.roles import Roles, event_name
 from robosc.tools.cli import main
 
@@ -26,6 +28,19 @@ MODEL = """robot Courier {
 
   provide speed with 1 if Base.near
   provide speed with 9
+}
+"""
+SERVED = """robot Office {
+  interface switch use SetBool from std_srvs
+  datatype object Answer { success: boolean }
+
+  component Desk {
+    outgoing service order with identifier: "/order", request: none, response: Answer links switch
+
+    behaviour { initial marked state idle { on response to order } }
+  }
+
+  requirement order needs value.success
 }
 """
 TOLD = {
@@ -71,3 +86,10 @@ def test_generated_texts_tell_the_statement_and_no_line(tmp_path: Path) -> None:
     assert "Base.speed is to be sent without data." in told
     commented = models(tmp_path, f"// a comment\n\n{MODEL}")
     assert [generate(commented, Configuration()) for generate in generators] == texts
+
+
+def test_the_data_of_an_answer_has_the_name_of_its_field(tmp_path: Path) -> None:
+    events = models(tmp_path, SERVED).sct
+    answer = next(event for event in Roles(events).events if event.kind == sct.EventKind.reply)
+    step = TraceStep(event_name(answer), {answer.inputs[0].name: True})
+    assert in_words([step], events) == "response to `Desk.order` (success = true)"

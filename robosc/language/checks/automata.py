@@ -8,12 +8,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from robosc.language.checks.definitions import communication_of, of_kind, statements
-from robosc.language.checks.edits import Choice, Insertion, Removal, part_of
+from robosc.language.checks.edits import NOWHERE, Choice, Insertion, Removal, Replacement, part_of
 from robosc.language.checks.fleets import reference_key
 from robosc.language.checks.rule import Finding, on_line
 from robosc.model import robosc as rsc
 from robosc.model.reflection import tree
-from robosc.model.semantics.communication import event_names, kind_text, port_event_of
+from robosc.model.semantics.communication import SERVED, event_names, event_of, kind_text, port_event_of
 from robosc.model.semantics.naming import enumeration, escape_keyword
 
 if TYPE_CHECKING:
@@ -33,6 +33,8 @@ def unknown_events(base: rsc.Base) -> Iterator[Finding]:
     """Report events that their communications do not have, for the rule `result-type`."""
     for named in named_events(base):
         communication = communication_of(named.communicationType)
+        if isinstance(named, rsc.NamedEvent):
+            yield from wrong_preposition(named)
         if communication is not None and port_event_of(named) is None and isinstance(named, rsc.NamedEvent):
             allowed = event_names(communication)
             yield Finding(
@@ -44,6 +46,26 @@ def unknown_events(base: rsc.Base) -> Iterator[Finding]:
                     part_of(named).until(part_of(named.communicationType)),
                 ),
             )
+
+
+def wrong_preposition(named: rsc.ResultTransition | rsc.NamedEvent) -> Iterator[Finding]:
+    """Report `to` before a client's event, and `from` before an answer to it, for the rule `result-type`.
+
+    Other communications accept both words.
+    """
+    communication, row = communication_of(named.communicationType), event_of(named.communicationType, named.resultType)
+    if row is None or not isinstance(communication, SERVED):
+        return
+    wrong = "from" if row.is_sent else "to"
+    word = part_of(named).until(part_of(named.communicationType)).find(wrong)
+    if word != NOWHERE:
+        sender = "the controller" if row.is_sent else "a client"
+        yield Finding(
+            named,
+            f"{sender} sends the {row.name} of {kind_text(communication)} `{communication.name}`,"
+            f" expected `{row.preposition}`",
+            Replacement(f"write `{row.preposition}` instead of `{wrong}`", row.preposition, word),
+        )
 
 
 def initial_states(base: rsc.Base) -> Iterator[Finding]:

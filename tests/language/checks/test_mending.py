@@ -120,6 +120,7 @@ TOLD = {
         "give it another `identifier`, or use one of them for both",
         "write `Side[1]` or `Front` in",
         "write `on ",
+        "write the name of the communication alone",
         "write the condition with `Front` itself",
         "write `text(i)` with an integer",
         "write `requirement each T: …` for each instance",

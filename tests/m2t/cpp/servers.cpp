@@ -75,9 +75,11 @@ void ten_requests_wait_and_then_the_oldest_is_refused() {
   service.called(11, 11);
   CHECK(service.refused == std::vector({1}));
   CHECK(service.warned == std::vector<std::string>({"more than 10 requests wait: the oldest one is gone"}));
+  service.called(12, 12);
+  CHECK(service.refused == std::vector({1, 2}) && service.warned.size() == 1);  // The next one after five seconds.
   service.leave();
   CHECK(service.warned.back() == "requests without a response at the end of this node: 11");
-  CHECK(service.refused == std::vector({1, 0, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}));
+  CHECK(service.refused == std::vector({1, 2, 0, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}));
   service.leave();
   CHECK(service.warned.size() == 2);
 }
@@ -125,6 +127,7 @@ void one_goal_is_open_at_a_time() {
   CHECK(action.told == std::vector<std::string>({"goal 1", rejected, "a feedback 5", "a aborted 6"}));
   action.permitting = false;
   CHECK(!action.permits(1) && !action.is_open("a"));
+  CHECK(action.told.size() == 4);  // The next warning of a rejection after five seconds.
 }
 
 void a_goal_may_end_at_once_and_may_fail_to_begin() {

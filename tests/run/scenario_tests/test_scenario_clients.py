@@ -107,6 +107,16 @@ def test_a_rejected_goal_is_a_hint() -> None:
     assert hint.endswith("; the controller rejected the goal of `visit`")
 
 
+def test_an_answer_that_was_not_sent() -> None:
+    lines = ("  expect canceled to visit sent\n", "  expect error to visit sent\n")
+    assert [message for _, message, _ in findings(GOAL, lines[0])] == [
+        "the answer `canceled` to `Base.visit` was not sent since the last step"
+    ]
+    assert [message for _, message, _ in findings(GOAL, lines[1])] == [
+        "the error to `Base.visit` was not sent since the last step"
+    ]
+
+
 def test_a_cancel_that_no_transition_names(folder: Path) -> None:
     text = (folder / "visitor.rscd").read_text(encoding="utf-8")
     lines = [line for line in text.splitlines(keepends=True) if "cancel" not in line]

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robosc.base.diagnostics import Severity
-from robosc.language.checks.automata import one_out, repeated_events, unknown_events
+from robosc.language.checks.automata import one_out, repeated_events, unknown_events, wrong_preposition
 from robosc.language.checks.definitions import (
     assigned_variable,
     behaviours,
@@ -46,13 +46,14 @@ _SENT_BY = {"request": ("incoming", "the controller"), "response": ("outgoing", 
 
 @rule("result-type")
 def result_type(base: rsc.Base) -> Iterator[Finding]:
-    """Every transition names an event that its communication has."""
+    """Every transition names an event that its communication has; `to` and `from` fit a served one."""
     yield from unknown_events(base)
     for _, transition in transitions(base):
         if isinstance(transition, rsc.TimedTransition):
             yield from _silences(transition)
         if not isinstance(transition, rsc.ResultTransition):
             continue
+        yield from wrong_preposition(transition)
         communication = communication_of(transition.communicationType)
         event, allowed = str(transition.resultType), event_names(communication)
         if communication is not None and event not in allowed:

@@ -154,7 +154,7 @@ class Controller(EventHandler):
         return server
 
     def _warner(self, server: Server) -> Callable[[str], None]:
-        return lambda text: self._port.warn(f"{server.identifier}: {text}")
+        return lambda text: self._warn((server, text), f"{server.identifier}: {text}")
 
     def _ends(self, client: Client) -> tuple[Callable[[Message], None], Callable[[Failure, str, Message], None]]:
         """Return the handlers of a response and of a failure of a service or action."""

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "robosc/throttle.hpp"
 #include "robosc/version.hpp"
 
 namespace robosc {
@@ -75,7 +76,9 @@ class CallServer {
     waiting_.push_back({caller, request});
     look();
     if (waiting_.size() <= kWaitingRequests) return;
-    handlers_.warn("more than " + std::to_string(kWaitingRequests) + " requests wait: the oldest one is " + fate_);
+    if (drops_.due(0)) {
+      handlers_.warn("more than " + std::to_string(kWaitingRequests) + " requests wait: the oldest one is " + fate_);
+    }
     const Caller oldest = waiting_.front().caller;
     waiting_.pop_front();
     refuse(oldest);
@@ -93,6 +96,7 @@ class CallServer {
   const Handlers handlers_;
   std::optional<Caller> open_;
   std::deque<Call> waiting_;  ///< The oldest first.
+  Throttle<int> drops_;
 };
 
 }  // namespace ROBOSC_VERSION

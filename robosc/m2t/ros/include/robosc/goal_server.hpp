@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "robosc/throttle.hpp"
 #include "robosc/version.hpp"
 
 namespace robosc {
@@ -62,9 +63,11 @@ class GoalServer {
   virtual void fail(Handle handle, const Result& result, const char* why) = 0;
 
   /// Whether a new goal is accepted now. Reports a rejection.
-  bool permits(const Goal& goal) const {
+  bool permits(const Goal& goal) {
     const bool permitted = !handle_ && handlers_.permits(goal);
-    if (!permitted) handlers_.warn("a goal is rejected: its data or the present state does not permit it");
+    if (!permitted && rejections_.due(0)) {
+      handlers_.warn("a goal is rejected: its data or the present state does not permit it");
+    }
     return permitted;
   }
 
@@ -86,6 +89,7 @@ class GoalServer {
 
   const Handlers handlers_;
   std::optional<Handle> handle_;  ///< The open goal.
+  Throttle<int> rejections_;
 };
 
 }  // namespace ROBOSC_VERSION
