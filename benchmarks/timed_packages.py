@@ -11,13 +11,18 @@ from pathlib import Path
 
 HERE = Path(__file__).parent
 EXAMPLES = HERE.parent / "examples"
-TICK = re.compile(r"  void tick\(\) \{\n(    (\w+)_tick\(&supervisor_\);\n(?:.*\n)*?)  \}\n")
-TIMED = r"""  void tick() {
+INTERFACES = HERE.parent / "tests" / "ros" / "interfaces"
+TICK = re.compile(
+    r"  void tick\(\) override \{\n"
+    r"((?:    .*\n)*?    (\w+)_tick\(&supervisor_((?:, alarm_->at\(\))?)\);\n(?:.*\n)*?)"
+    r"  \}\n"
+)
+TIMED = r"""  void tick() override {
     auto alone = supervisor_;
     const auto began = TickTimes::Clock::now();
 \1    const auto ended = TickTimes::Clock::now();
     alone.hooks = \2_hooks{};
-    \2_tick(&alone);
+    \2_tick(&alone\3);
     tick_times.note(ended - began, TickTimes::Clock::now() - ended);
   }
 """
@@ -87,6 +92,7 @@ def _timed(scenario: Scenario, version: int, generated: Path, folder: Path) -> P
     ros = f"ros{version}"
     target, package = f"{ros}-layer" if scenario.layer else ros, folder / ros / scenario.package
     command = [sys.executable, "-m", "robosc", "transform", scenario.model, "--to", target, "-o", generated]
+    command += ["--interface-path", INTERFACES / ros]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     plain = generated / ros / scenario.package
