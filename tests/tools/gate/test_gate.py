@@ -115,6 +115,22 @@ def test_a_message_is_sent_limited_or_refused(tmp_path: Path) -> None:
     run(tmp_path, script)
 
 
+def test_a_gate_that_has_stopped_sends_nothing(tmp_path: Path) -> None:
+    """It waits for the end of goals that it cancels, and nothing would stop a later command."""
+
+    async def script(client: Client, bench: Bench) -> None:
+        await call(client, "Base_velocity", linear={"x": 0.75})
+        await bench.gate._on_node(bench.layer.stop)
+        stopped = bench.received()
+        assert stopped[-1][1]["linear"]["x"] == 0.0
+        for tool in ("Base_velocity", "Base_horn", "Lamp_light", "Navigation_go_to"):
+            late = await call(client, tool)
+            assert (late["verdict"], late["because"]) == ("failed", ["the gate is ending"])
+        assert bench.received() == stopped
+
+    run(tmp_path, script)
+
+
 def test_a_message_that_nobody_receives(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     async def script(client: Client, bench: Bench) -> None:
         monkeypatch.setattr(bench.node, "receivers", lambda _: 0)
