@@ -287,7 +287,10 @@ class Ros2Action(_Goals):
         return start is not None and start < accepted <= self.judge.time
 
     def _feedback(self, message: Message) -> None:
-        self._feed_back(bytes(message.goal_id.uuid), message.feedback)
+        goal = bytes(message.goal_id.uuid)
+        # Only a status shows whether the goal began before the recording.
+        if goal in self._ended or not self._is_first:
+            self._feed_back(goal, message.feedback)
 
     def _send_goal(self, message: Message) -> None:
         call = _call(message)

@@ -204,6 +204,14 @@ def test_a_goal_from_before_the_recording_is_known(tmp_path: Path) -> None:
     assert found(audit_of(entries, tmp_path)) == []
 
 
+def test_feedback_before_the_first_status_begins_no_goal(tmp_path: Path) -> None:
+    entries = [door(0.0, "opened"), feedback(0.1, 7), status(0.2, (7, EXECUTING)), status(3.0, (7, SUCCEEDED))]
+    audit = audit_of(entries, tmp_path)
+    assert (found(audit), audit.commands) == ([], 0)
+    entries[2] = status(0.2, (7, EXECUTING), accepted=0.05)
+    assert found(audit_of(entries, tmp_path)) == [("forbidden", "Base.drive", "requirement", [0.2])]
+
+
 def test_the_first_status_may_have_a_goal_that_began_in_the_recording(tmp_path: Path) -> None:
     """A server publishes no status before its first goal."""
     entries = [door(0.0, "opened"), status(1.0, (7, ACCEPTED), accepted=0.99)]
