@@ -273,6 +273,10 @@ class WorldPort:
         """Return no nodes: each server is there once."""
         return []
 
+    def calling_nodes(self, _client):
+        """Return no nodes: nothing goes around a layer."""
+        return []
+
     def info(self, text):
         """Do nothing: there are no listeners."""
 

@@ -323,6 +323,7 @@ class Gate:
                 },
                 "goals": {tool: self._goal(action.latest) for tool, action in self._actions.items() if action.latest},
                 "violated": self.layer.violated(),
+                "graph": self.layer.graph_faults(),
             }
 
         holder = self._writer.holder

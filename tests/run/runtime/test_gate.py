@@ -12,7 +12,7 @@ from robosc.language.configuration.parameters import layer_parameters
 from robosc.model.semantics.messages import find_message
 from robosc.run.runtime.core.event_loop import EventLoop
 from robosc.run.runtime.core.gate import GatedLayer, Outcome
-from robosc.run.runtime.core.port import CancelAnswer, GoalOutcome
+from robosc.run.runtime.core.port import CancelAnswer, Endpoint, GoalOutcome
 from robosc.run.runtime.core.settings import SafeMessages, Settings
 from tests.run.runtime.fake import FakePort, Record, supervised
 
@@ -104,6 +104,14 @@ def test_a_message_passes_the_layer(bench: Bench) -> None:
         ("requirement speed needs Guard.clear",),
     )
     assert bench.port.sent[1:] == [("/speed", {})], "the message of `on_blocked`, with the defaults of ROS"
+
+
+def test_nodes_that_go_around_the_layer_are_listed(bench: Bench) -> None:
+    assert bench.layer.graph_faults() == []
+    topic = next(each for each in bench.graph.publishers if each.topic == "/speed")
+    bench.port.others = {topic: [Endpoint("/teleop", "std_msgs/Float32")]}
+    bench.wait(1.5)
+    assert bench.layer.graph_faults() == ["/speed: /teleop publishes it, too, around this layer"]
 
 
 def test_release_stops_only_what_was_sent(bench: Bench) -> None:

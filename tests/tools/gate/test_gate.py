@@ -253,7 +253,7 @@ def test_state_shows_components_and_commands(tmp_path: Path) -> None:
         assert state["components"]["Person"] == {"state": "near", "variables": {}}
         assert state["commands"]["Base_horn"] == {"allowed": True}
         assert state["commands"]["Navigation_go_to"]["because"] == ["requirement go_to needs Person.away"]
-        assert (state["writer"], state["violated"]) == ("you", [])
+        assert (state["writer"], state["violated"], state["graph"]) == ("you", [], [])
 
     run(tmp_path, script)
 

@@ -146,6 +146,13 @@ class GatedLayer(Layer):
         """Return the assumptions that the robot has violated."""
         return list(map(assumption_text, self._violations.assumptions))
 
+    def graph_faults(self) -> list[str]:
+        """Return the faults of the robot's connections, such as nodes that go around the layer."""
+        graph = self._graph
+        elements: list[rosgraph.Subscription | rosgraph.Publisher | Client] = [*graph.subscriptions, *graph.publishers]
+        elements += [*graph.serviceClients, *graph.actionClients]
+        return [fault for element in elements for fault in self._monitor.faults(element)]
+
     # Refusals and failures
 
     def _report_blocked(self, event: sct.Event, reason: str, because: Sequence[str]) -> None:
