@@ -17,6 +17,7 @@ import uvicorn
 from mcp.server.lowlevel import Server
 from mcp.server.stdio import stdio_server
 from mcp_types.version import MODERN_PROTOCOL_VERSIONS
+from pydantic_core import from_json
 from starlette.requests import Request
 from starlette.responses import PlainTextResponse
 
@@ -163,8 +164,8 @@ class _Messages:
         """Return the next line; an empty text at the end."""
         while line := self._lines.readline():
             try:
-                json.loads(line)
-            except (ValueError, RecursionError):
+                from_json(line)  # as the library reads it, which drops other lines
+            except ValueError:
                 self._gate.note(STDIO, "", line, refusal("schema", "a line that is no JSON"))
             else:
                 return line
