@@ -17,7 +17,6 @@ import uvicorn
 from mcp.server.lowlevel import Server
 from mcp.server.stdio import stdio_server
 from mcp_types.version import MODERN_PROTOCOL_VERSIONS
-from pydantic_core import from_json
 from starlette.requests import Request
 from starlette.responses import PlainTextResponse
 
@@ -154,7 +153,7 @@ async def serve_stdio(gate: Gate) -> None:
 
 
 class _Messages:
-    """Lines of standard input that are JSON; others, and those that are too long, are logged as refused calls."""
+    """Lines of standard input that are messages of the protocol; others, and those that are too long, are logged as refused calls."""
 
     def __init__(self, gate: Gate) -> None:
         self._gate = gate
@@ -164,9 +163,9 @@ class _Messages:
         """Return the next line; an empty text at the end."""
         while line := self._lines.readline():
             try:
-                from_json(line)  # as the library reads it, which drops other lines
+                types.jsonrpc_message_adapter.validate_json(line)  # the library drops other lines
             except ValueError:
-                self._gate.note(STDIO, "", line, refusal("schema", "a line that is no JSON"))
+                self._gate.note(STDIO, "", line, refusal("schema", "a line that is no message of the protocol"))
             else:
                 return line
         return ""
