@@ -153,7 +153,7 @@ async def serve_stdio(gate: Gate) -> None:
 
 
 class _Messages:
-    """Lines of standard input that are messages of the protocol; others, and those that are too long, are logged as refused calls."""
+    """Messages of the protocol on standard input; other lines, and too long ones, are logged as refused calls."""
 
     def __init__(self, gate: Gate) -> None:
         self._gate = gate
