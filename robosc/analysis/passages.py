@@ -45,6 +45,8 @@ class Outcome(StrEnum):
     #: Only the robot's own nodes send it.
     INTERNAL = "inside the robot"
     SENSOR = "sensor data"
+    #: The robot and the layer both hear it: an emergency stop, for example. The model does not command it.
+    HEARD = "heard by the layer"
 
 
 #: Outcomes that leave a way around the layer.
@@ -147,8 +149,9 @@ def passages(
             type_name, model_name = guarded[kind, name]
             inside = [f"{node.name}/{below_layer(model_name)}" for node in layers]
             result.append(_guarded((kind, name, type_name), inside, layers, others))
-        elif not (kind == "topic" and name in heard):
-            result.append(_unguarded(kind, name, own, others))
+        else:
+            is_heard = kind == "topic" and name in heard
+            result.append(_unguarded(kind, name, own, others, is_heard=is_heard))
     return Passages([node.name for node in layers], [node.name for node in own], result)
 
 
@@ -181,8 +184,7 @@ def endpoints_of(robot: Iterable[Node]) -> list[tuple[str, str]]:
 def _is_common(kind: str, name: str, types: Sequence[str]) -> bool:
     if kind == "topic" and name in _COMMON_TOPICS:
         return True
-    common = kind == "service" and all(type_name.partition("/")[0] in _COMMON_SERVICES for type_name in types)
-    return common or any(part.startswith("_") for part in name.split("/"))
+    return kind == "service" and all(type_name.partition("/")[0] in _COMMON_SERVICES for type_name in types)
 
 
 def is_sensor_data(types: Iterable[str]) -> bool:
@@ -222,7 +224,9 @@ def _guarded(
     return Passage(kind, name, [type_name, *other_types], outcome, through, around, list(taken))
 
 
-def _unguarded(kind: str, name: str, robot: Sequence[Node], others: Sequence[Node]) -> Passage:
+def _unguarded(
+    kind: str, name: str, robot: Sequence[Node], others: Sequence[Node], *, is_heard: bool = False
+) -> Passage:
     taken = takers(kind, name, robot)
     types = sorted({type_name for known in taken.values() for type_name in known})
     users = senders(kind, name, others)
@@ -232,7 +236,7 @@ def _unguarded(kind: str, name: str, robot: Sequence[Node], others: Sequence[Nod
     elif users and own.issuperset(users):
         outcome = Outcome.INTERNAL
     else:
-        outcome = Outcome.MISSING
+        outcome = Outcome.HEARD if is_heard else Outcome.MISSING
     return Passage(kind, name, types, outcome, [], users, list(taken))
 
 

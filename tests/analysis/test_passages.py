@@ -95,9 +95,31 @@ def test_what_the_robot_sends_itself_and_sensor_data_are_no_holes() -> None:
     )
     assert answer.is_complete
     assert (found(answer)["/wheels"], found(answer)["/imu"]) == (Outcome.INTERNAL, Outcome.SENSOR)
-    assert "/scan" not in found(answer)
+    assert found(answer)["/scan"] is Outcome.SENSOR
     joy = look(("/base", "subscribers", "/joy", "sensor_msgs/msg/Joy"))
     assert found(joy)["/joy"] is Outcome.MISSING
+
+
+def test_a_topic_that_robot_and_layer_hear_is_listed() -> None:
+    heard = GRAPH.subscriptions[0].topic
+    answer = look(("/base", "subscribers", heard, SPEED), ("/teleop", "publishers", heard, SPEED))
+    assert found(answer)[heard] is Outcome.HEARD
+    assert evidence(answer, heard) == "from /teleop to /base"
+
+
+def test_hidden_names_are_holes() -> None:
+    """ROS hides them only from lists; an action has five hidden names of its own."""
+    hidden: list[Endpoint] = [
+        ("/base", "subscribers", "/_fast/speed", SPEED),
+        ("/base", "service_servers", "/go_to/_action/boost", LIGHT),
+    ]
+    usual: list[Endpoint] = [
+        ("/base", "service_servers", "/go_to/_action/cancel_goal", "action_msgs/srv/CancelGoal"),
+        ("/base", "subscribers", "/go_to/_action/feedback", f"{GO}_FeedbackMessage"),
+    ]
+    answer = look(*hidden, *usual)
+    missing = {name for name, outcome in found(answer).items() if outcome is Outcome.MISSING}
+    assert missing == {"/_fast/speed", "/go_to/_action/boost"}
 
 
 def test_the_robot_is_named_or_it_is_what_takes_a_command() -> None:

@@ -88,6 +88,9 @@ FAULTS = {
         '1:48 "nodes.0.publishers.x.0" must be a type, such as geometry_msgs/Twist',
         '1:54 "nodes.0.publishers./z" must be an array',
     ],
+    '{"nodes": [{"name": "/b", "subscribers": {"/z": []}}]}': [
+        '1:43 "nodes.0.subscribers./z" must have a type',
+    ],
 }
 
 

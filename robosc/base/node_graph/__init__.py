@@ -26,6 +26,7 @@ _TAKEN = {"topic": "subscribers", "service": "service_servers", "action": "actio
 _SENT = {"topic": "publishers", "service": "service_clients", "action": "action_clients"}
 #: Names of an action's services and topics, the service that takes its goals, and the end of its type.
 _OF_ACTION, _SEND_GOAL, _SEND_GOAL_TYPE = "/_action/", "/_action/send_goal", "_SendGoal"
+_PARTS_OF_ACTIONS = {"send_goal", "cancel_goal", "get_result", "feedback", "status"}
 
 
 @dataclass(frozen=True)
@@ -75,7 +76,7 @@ def node_graph(names: Iterable[str], endpoints: Iterable[Endpoint]) -> NodeGraph
     nodes: dict[str, dict[str, dict[str, set[str]]]] = {name: {} for name in names}
     for node, part, name, kind in endpoints:
         own, own_part, own_type = name, part, short_type(kind)
-        if _OF_ACTION in name:
+        if name.partition(_OF_ACTION)[2] in _PARTS_OF_ACTIONS:
             if not name.endswith(_SEND_GOAL) or not part.startswith("service"):
                 continue
             own, own_part = name.removesuffix(_SEND_GOAL), part.replace("service", "action")

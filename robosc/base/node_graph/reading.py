@@ -27,6 +27,12 @@ def _requires(pattern: str, meaning: str) -> Callable[[str], str]:
     return check
 
 
+def _require_type(types: list[str]) -> list[str]:
+    if not types:
+        raise ValueError("must have a type")
+    return types
+
+
 _NAME, _TYPE = "(/[A-Za-z0-9_]+)+", "[A-Za-z0-9_]+(/(msg|srv|action))?/[A-Za-z0-9_]+"
 _Name = Annotated[
     str,
@@ -38,7 +44,7 @@ _Type = Annotated[
     AfterValidator(_requires(_TYPE, "a type, such as geometry_msgs/Twist")),
     Field(json_schema_extra={"pattern": f"^{_TYPE}$"}),
 ]
-_Types = dict[_Name, list[_Type]]
+_Types = dict[_Name, Annotated[list[_Type], AfterValidator(_require_type), Field(json_schema_extra={"minItems": 1})]]
 
 
 class _Checked(BaseModel):

@@ -160,6 +160,11 @@ class Judge(EventHandler):
 
     # Time
 
+    @property
+    def time(self) -> int:
+        """The latest time of the recording, in nanoseconds."""
+        return self._time
+
     def begin(self, time: int, state: Mapping[sct.Plant | sct.DiscreteVariable, Any] | None = None) -> None:
         """Start at a time in nanoseconds, in the initial state, or in the state that differs in these values."""
         self.audit.start = self._time = time
@@ -180,7 +185,7 @@ class Judge(EventHandler):
         """Let time pass; a time before the latest one counts as that. Timers expire at their times."""
         port, loop = self._recorder, self._event_loop
         while self._waiting and self._waiting[0].time + self._tolerance < time:
-            self.decide()
+            self._decide_first()
         now = (time + self._offset) / SECOND
         expiries = 0
         while (wait := loop.run_pending()) is not None and port.time + wait <= now:
@@ -288,15 +293,19 @@ class Judge(EventHandler):
     def decide(self) -> None:
         """Decide on all commands that wait: no later message can permit them."""
         while self._waiting:
-            command = self._waiting.popleft()
-            sending = self._permitted(command) or command.chosen
-            if command.is_accepted:
-                self.audit.tolerated += 1
-            else:
-                for finding in command.findings:
-                    self._add(finding, command.time)
-            self._happen(command, sending, is_found=not command.is_accepted)
-            self._retry()
+            self._decide_first()
+
+    def _decide_first(self) -> None:
+        """Decide on the first command that waits, and on those that it permits."""
+        command = self._waiting.popleft()
+        sending = self._permitted(command) or command.chosen
+        if command.is_accepted:
+            self.audit.tolerated += 1
+        else:
+            for finding in command.findings:
+                self._add(finding, command.time)
+        self._happen(command, sending, is_found=not command.is_accepted)
+        self._retry()
 
     def _retry(self) -> None:
         """Let the commands that wait happen, in their order, as far as they are permitted by now."""

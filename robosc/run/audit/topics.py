@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.base.recordings.decoding import DecodingError, flat
 from robosc.base.ros_types import Section
+from robosc.run.audit.findings import SECOND
 from robosc.run.runtime.core.port import Failure, GoalOutcome
 
 if TYPE_CHECKING:
@@ -267,8 +268,7 @@ class Ros2Action(_Goals):
     def _status(self, message: Message) -> None:
         for entry in message.status_list:
             goal, status = bytes(entry.goal_info.goal_id.uuid), int(entry.status)
-            if self._is_first and goal not in self._ended:
-                # The goal began before the recording.
+            if self._is_first and goal not in self._ended and not self._began_here(entry.goal_info.stamp):
                 self._ended[goal] = status in _ENDS
                 if status in _ACTIVE:
                     self._present = goal
@@ -281,8 +281,16 @@ class Ros2Action(_Goals):
                 self._finish(goal, _ENDS[status], None)
         self._is_first = False
 
+    def _began_here(self, stamp: Message) -> bool:
+        """Return whether a goal was accepted since the start of the recording, by the clock of its server."""
+        accepted, start = int(stamp.sec) * SECOND + int(stamp.nanosec), self.judge.audit.start
+        return start is not None and start < accepted <= self.judge.time
+
     def _feedback(self, message: Message) -> None:
-        self._feed_back(bytes(message.goal_id.uuid), message.feedback)
+        goal = bytes(message.goal_id.uuid)
+        # Only a status shows whether the goal began before the recording.
+        if goal in self._ended or not self._is_first:
+            self._feed_back(goal, message.feedback)
 
     def _send_goal(self, message: Message) -> None:
         call = _call(message)
@@ -357,8 +365,8 @@ class Topics:
         self._graph = graph
         self._by_version: dict[int, list[Part]] = {}
         both: list[Part] = [
-            *(Heard(judge, port, resolve(heard.topic), heard) for heard in graph.subscriptions),
             *(Sent(judge, port, resolve(sent.topic), sent) for sent in graph.publishers),
+            *(Heard(judge, port, resolve(heard.topic), heard) for heard in graph.subscriptions),
             *(
                 Service(judge, port, resolve(client.identifier), client, service_timeout)
                 for client in graph.serviceClients
@@ -367,10 +375,13 @@ class Topics:
         for ros, kind in ((1, Ros1Action), (2, Ros2Action)):
             actions = [kind(judge, port, resolve(client.identifier), client) for client in graph.actionClients]
             self._by_version[ros] = [*both, *actions]
-        self._handlers = {
-            ros: {topic: (part, *described) for part in parts for topic, described in part.topics().items()}
-            for ros, parts in self._by_version.items()
-        }
+        #: Parts of each topic, with its type and handler. A controller may listen to its own commands.
+        self._handlers: dict[int, dict[str, list[tuple[Part, str, Callable[[Message], None]]]]] = {}
+        for ros, parts in self._by_version.items():
+            handlers = self._handlers[ros] = {}
+            for part in parts:
+                for topic, described in part.topics().items():
+                    handlers.setdefault(topic, []).append((part, *described))
         servers: list[Server] = [*graph.serviceServers, *graph.actionServers]
         self._served = [resolve(server.identifier) for server in servers]
         self._other_types: dict[str, str] = {}
@@ -380,12 +391,12 @@ class Topics:
 
     def handler(self, channel: Channel) -> Callable[[bytes], None] | None:
         """Return the function that handles a message of a channel; None if the model has no such topic, or type."""
-        known = self._handlers[channel.ros].get(channel.topic)
-        if known is None:
-            return None
-        part, kind, handle = known
-        if flat(channel.type) != kind:
-            self._other_types[channel.topic] = f"it has the type {channel.type}, the model expects {kind}"
+        known = self._handlers[channel.ros].get(channel.topic, [])
+        fitting = [(part, handle) for part, kind, handle in known if flat(channel.type) == kind]
+        if len(fitting) < len(known):
+            kinds = " and ".join(dict.fromkeys(kind for _, kind, _ in known))
+            self._other_types[channel.topic] = f"it has the type {channel.type}, the model expects {kinds}"
+        if not fitting:
             return None
         decode, port, judge, topic = channel.decode, self._port, self._judge, channel.topic
 
@@ -396,10 +407,11 @@ class Topics:
                 count, why = self._broken.get(topic, (0, str(error)))
                 self._broken[topic] = count + 1, why
                 return
-            part.seen.add(topic)
-            port.recorded_types = decode.wire_types
-            judge.topic = topic
-            handle(message)
+            for part, handle in fitting:
+                part.seen.add(topic)
+                port.recorded_types = decode.wire_types
+                judge.topic = topic
+                handle(message)
 
         return read
 

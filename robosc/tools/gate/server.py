@@ -153,7 +153,7 @@ async def serve_stdio(gate: Gate) -> None:
 
 
 class _Messages:
-    """Lines of standard input that are JSON; others, and those that are too long, are logged as refused calls."""
+    """Messages of the protocol on standard input; other lines, and too long ones, are logged as refused calls."""
 
     def __init__(self, gate: Gate) -> None:
         self._gate = gate
@@ -163,9 +163,9 @@ class _Messages:
         """Return the next line; an empty text at the end."""
         while line := self._lines.readline():
             try:
-                json.loads(line)
-            except (ValueError, RecursionError):
-                self._gate.note(STDIO, "", line, refusal("schema", "a line that is no JSON"))
+                types.jsonrpc_message_adapter.validate_json(line)  # the library drops other lines
+            except ValueError:
+                self._gate.note(STDIO, "", line, refusal("schema", "a line that is no message of the protocol"))
             else:
                 return line
         return ""

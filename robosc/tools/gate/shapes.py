@@ -30,6 +30,8 @@ _FLOATS = {
     "float32": (struct.unpack("<f", b"\xff\xff\x7f\x7f")[0], "f"),
     "float64": (struct.unpack("<d", b"\xff\xff\xff\xff\xff\xff\xef\x7f")[0], "d"),
 }
+#: Range of a `byte` of ROS 2, which is signed in ROS 1 only.
+_OCTET = (0, 255)
 #: Maximum number of faults in an answer.
 _MOST_FAULTS = 10
 
@@ -275,7 +277,7 @@ class Shapes:
             limit, code = _FLOATS[wire.name]
             return Number(-limit, limit, code, notes=notes)
         if primitive.range is not None:
-            low, high = primitive.range
+            low, high = _OCTET if wire.name == "byte" else primitive.range
             if self.instance is not None and isinstance(declared, rsc.IntegerDataType):
                 bounds = self.instance.data_type(declared)
                 assert isinstance(bounds, rsc.IntegerDataType)

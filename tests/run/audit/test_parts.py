@@ -9,7 +9,7 @@ import pytest
 from robosc.language.configuration import Configuration
 from robosc.model import rosgraph
 from robosc.run.audit import judge
-from tests.run.audit.recordings import START, Entry, store, write_bag, write_mcap, write_sqlite
+from tests.run.audit.recordings import SECOND, START, Entry, store, write_bag, write_mcap, write_sqlite
 from tests.run.audit.test_audit import audited, graph_of
 
 if TYPE_CHECKING:
@@ -115,8 +115,12 @@ def call(time: float, number: int, *, answer: bool | None = None, kind: int | No
     return Entry(time, "/beam/_service_event", "std_srvs/msg/SetBool_Event", fields)
 
 
-def status(time: float, *goals: tuple[int, int]) -> Entry:
-    entries = [{"goal_info": {"goal_id": {"uuid": [goal] * 16}}, "status": state} for goal, state in goals]
+def status(time: float, *goals: tuple[int, int], accepted: float = -START) -> Entry:
+    nanoseconds = round((START + accepted) * 1000) * 1_000_000
+    stamp = {"sec": nanoseconds // SECOND, "nanosec": nanoseconds % SECOND}
+    entries = [
+        {"goal_info": {"goal_id": {"uuid": [goal] * 16}, "stamp": stamp}, "status": state} for goal, state in goals
+    ]
     return Entry(time, "/drive/_action/status", "action_msgs/msg/GoalStatusArray", {"status_list": entries})
 
 
@@ -197,6 +201,22 @@ def test_a_goal_that_the_supervisor_would_cancel_is_found(tmp_path: Path) -> Non
 
 def test_a_goal_from_before_the_recording_is_known(tmp_path: Path) -> None:
     entries = [status(0.0, (6, SUCCEEDED), (7, EXECUTING)), call(0.1, 1), call(0.2, 1, answer=True)]
+    assert found(audit_of(entries, tmp_path)) == []
+
+
+def test_feedback_before_the_first_status_begins_no_goal(tmp_path: Path) -> None:
+    entries = [door(0.0, "opened"), feedback(0.1, 7), status(0.2, (7, EXECUTING)), status(3.0, (7, SUCCEEDED))]
+    audit = audit_of(entries, tmp_path)
+    assert (found(audit), audit.commands) == ([], 0)
+    entries[2] = status(0.2, (7, EXECUTING), accepted=0.05)
+    assert found(audit_of(entries, tmp_path)) == [("forbidden", "Base.drive", "requirement", [0.2])]
+
+
+def test_the_first_status_may_have_a_goal_that_began_in_the_recording(tmp_path: Path) -> None:
+    """A server publishes no status before its first goal."""
+    entries = [door(0.0, "opened"), status(1.0, (7, ACCEPTED), accepted=0.99)]
+    assert found(audit_of(entries, tmp_path)) == [("forbidden", "Base.drive", "requirement", [1.0])]
+    entries[1] = status(1.0, (7, ACCEPTED), accepted=-0.01)
     assert found(audit_of(entries, tmp_path)) == []
 
 
@@ -350,6 +370,36 @@ def test_a_tolerance_accepts_what_was_permitted_shortly_before_or_after(tmp_path
     tolerant = audited(graph_of(CART), path, tolerance=5_000_000)
     assert [finding[3] for finding in found(tolerant)] == [[2.02]]
     assert (strict.tolerated, tolerant.tolerated) == (0, 2)
+
+
+def test_each_command_has_the_whole_tolerance(tmp_path: Path) -> None:
+    fast = 0.5
+    entries = [seen(0.0, near=True), velocity(1.0, fast), velocity(1.004, fast), seen(1.006, near=False)]
+    audit = audited(graph_of(CART), write_mcap(tmp_path / "run", entries), tolerance=5_000_000)
+    assert [finding[3] for finding in found(audit)] == [[1.0]]
+    assert audit.tolerated == 1
+
+
+def test_a_topic_may_be_heard_and_commanded(tmp_path: Path) -> None:
+    robot = """robot Echo {
+  component Door {
+    outgoing message moved with identifier: "/door", type: none
+    behaviour {
+      initial marked state closed { on response from moved goto open }
+      marked state open { }
+    }
+  }
+  component Base {
+    incoming message door with identifier: "/door", type: none
+    incoming message drive with identifier: "/drive", type: none
+  }
+  requirement drive needs Door.closed
+}
+"""
+    entries = [door(0.0, "drive"), door(1.0, "door"), door(2.0, "drive")]
+    audit = audited(graph_of(robot), write_mcap(tmp_path / "run", entries))
+    assert found(audit) == [("forbidden", "Base.drive", "requirement", [2.0])]
+    assert (audit.commands, audit.events) == (3, 1)
 
 
 def test_a_tolerance_does_not_hide_a_second_command(tmp_path: Path) -> None:

@@ -252,3 +252,22 @@ def test_a_violated_assumption_refuses_everything(tmp_path: Path) -> None:
     verdict = bench.layer.verdict(bench.sending("label"))
     assert verdict is not None
     assert (verdict.reason, verdict.because) == ("assumption", bench.layer.violated())
+
+
+def test_an_integer_outside_of_its_range_is_refused(tmp_path: Path) -> None:
+    """The supervisor decides about the data that the robot gets, not about the nearest value in the range."""
+    robot = tmp_path / "geared.rscd"
+    robot.write_text("""robot Geared {
+  component Base {
+    incoming message speed with identifier: "/speed", type: integer(0..5) links number
+  }
+  interface number use Int32 from std_msgs
+  requirement speed needs value <= 5 and value >= 0
+}
+""")
+    bench = Bench(robot)
+    for value in (6, -1, 2**31 - 1):
+        outcome = bench.layer.send(bench.sending("speed"), Record(data=value))
+        assert (outcome.verdict, outcome.reason) == ("refused", "data")
+        assert list(outcome.because) == [f"its data is {value}, expected 0 to 5"]
+    assert bench.layer.send(bench.sending("speed"), Record(data=5)).verdict == "sent"

@@ -92,6 +92,7 @@ def test_raw_lines_on_standard_input(tmp_path: Path) -> None:
         _request(6, "tools/call", '{"name": "Base_horn", "arguments": [1]}'),
         _request(7, "tools/call", '{"name": 3}'),
         "this is no JSON",
+        _request(11, "tools/call", velocity % ("9" * 5000)),  # more digits than the library reads
         "[" * 100_000,
         _request(8, "tools/call", '{"name": "Base_text", "arguments": {"data": "%s"}}' % ("x" * 1_000_000)),
         _request(9, "robot/explode", "{}"),
@@ -119,7 +120,7 @@ def test_raw_lines_on_standard_input(tmp_path: Path) -> None:
     assert {"error"} <= answers[6].keys() & answers[7].keys() & answers[9].keys()
     assert answers[10]["result"]["structuredContent"] == {"verdict": "sent"}
     logged = sorted((entry["verdict"], entry.get("reason", "")) for entry in calls(tmp_path))
-    refused = [("refused", "schema")] * 8 + [("refused", "size")]
+    refused = [("refused", "schema")] * 9 + [("refused", "size")]
     assert logged == [*refused, ("released", ""), ("sent", "")]
 
 

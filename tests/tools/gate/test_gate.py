@@ -12,7 +12,8 @@ from jsonschema import Draft202012Validator
 
 from robosc.tools.gate import gate as gate_module
 from robosc.tools.gate.commands import UnknownTypeError, commands, tool_name
-from robosc.tools.gate.shapes import faults_of
+from robosc.tools.gate.dry import DryNode
+from robosc.tools.gate.shapes import Messages, faults_of
 from tests.tools.gate.bench import PORTER, call, connect, gate, models
 
 if TYPE_CHECKING:
@@ -111,6 +112,22 @@ def test_a_message_is_sent_limited_or_refused(tmp_path: Path) -> None:
         # The robot stops, and slow commands pass.
         assert [data["linear"]["x"] for _, data in bench.received()] == [0.75, 1.0, 0.0]
         assert await call(client, "Base_velocity", linear={"x": 0.25}) == {"verdict": "sent"}
+
+    run(tmp_path, script)
+
+
+def test_a_gate_that_has_stopped_sends_nothing(tmp_path: Path) -> None:
+    """It waits for the end of goals that it cancels, and nothing would stop a later command."""
+
+    async def script(client: Client, bench: Bench) -> None:
+        await call(client, "Base_velocity", linear={"x": 0.75})
+        await bench.gate._on_node(bench.layer.stop)
+        stopped = bench.received()
+        assert stopped[-1][1]["linear"]["x"] == 0.0
+        for tool in ("Base_velocity", "Base_horn", "Lamp_light", "Navigation_go_to"):
+            late = await call(client, tool)
+            assert (late["verdict"], late["because"]) == ("failed", ["the gate is ending"])
+        assert bench.received() == stopped
 
     run(tmp_path, script)
 
@@ -351,3 +368,32 @@ def test_commands_need_known_types(tmp_path: Path) -> None:
     (tmp_path / "porter.rscd").write_text(text, encoding="utf-8")
     with pytest.raises(UnknownTypeError, match=r"Lamp\.light: lamp_srvs/SetLamp is unknown in ROS 2"):
         commands(models(tmp_path / "porter.rscd"))
+
+
+def test_the_elements_of_an_array_have_their_own_data(tmp_path: Path) -> None:
+    """Nothing of one element or call is in another one. A byte of ROS 2 has no sign."""
+    robot = tmp_path / "fence.rscd"
+    robot.write_text("""robot Fence {
+  component Base {
+    incoming message fence with identifier: "/fence", type: geometry_msgs/Polygon
+    incoming message bytes with identifier: "/bytes", type: std_msgs/ByteMultiArray
+  }
+}
+""")
+    known = models(robot)
+    assert known.rosgraph is not None
+    assert known.ros_types is not None
+    fence, octets = commands(known)
+    messages = Messages(DryNode("fence", known.rosgraph, known.ros_types, str))
+
+    def sent(*points: dict[str, float]) -> Any:
+        data = fence.shape.converted({"points": list(points)})
+        message = messages.plain(messages.create(fence.element.interface, fence.section, data))
+        return [(point["x"], point["y"]) for point in message["points"]]
+
+    assert sent({"x": 1.0}, {"y": 2.0}) == [(1.0, 0.0), (0.0, 2.0)]
+    assert sent({}) == [(0.0, 0.0)]
+    assert faults_of(octets.shape, {"data": [0, 255]}) == []
+    assert faults_of(octets.shape, {"data": [-1]}) == ["data[0] is not between 0 and 255"]
+    message = messages.create(octets.element.interface, octets.section, {"data": [0, 255]})
+    assert messages.plain(message)["data"] == [0, 255]

@@ -55,6 +55,7 @@ class GatedLayer(Layer):
         super().__init__(graph, settings, port, event_loop, safe)
         #: Refusal or failure of the present command.
         self._obstacle = Outcome("failed")
+        self._has_stopped = False
         self._services = {
             service: ServiceProxy(port, event_loop, service, self, settings.seconds("service_timeout_ms"))
             for service in graph.serviceClients
@@ -114,8 +115,16 @@ class GatedLayer(Layer):
             self._send_instead(sending)
 
     def stop(self) -> None:
-        """Stop what the program has started before the node ends."""
+        """Stop what the program has started before the node ends. Later commands fail: nothing would stop them."""
+        self._has_stopped = True
         self.release()
+
+    def forwarded(self, sending: rosgraph.Sending, message: Message) -> Message | None:
+        """Return a command with its limits if the layer lets it pass and has not stopped, else None."""
+        if self._has_stopped:
+            self._obstacle = Outcome("failed", None, str(Failure.UNAVAILABLE), ("the gate is ending",))
+            return None
+        return super().forwarded(sending, message)
 
     @property
     def obstacle(self) -> Outcome:
