@@ -79,6 +79,14 @@ def refusal(reason: str, *because: str) -> dict[str, Any]:
     return {"verdict": "refused", "reason": reason, "because": list(because), "possible": [_WAYS_OUT[reason]]}
 
 
+@dataclass(eq=False)
+class _Write:
+    """Call of a tool that writes. `ended`: the session of its client has ended meanwhile."""
+
+    client: str
+    ended: bool = False
+
+
 @dataclass
 class Gate:
     """Tools of a robot for clients; its coroutines run in one thread, and the layer in that of its node.
@@ -108,6 +116,7 @@ class Gate:
         self._messages = Messages(self.node)
         self._rates = Rates(self.limits, time.monotonic)
         self._writer = Writer(self.limits, time.monotonic)
+        self._writes: list[_Write] = []
         self._explained: dict[Any, Explanation | None] = {}
         #: The explanation under way: its event and state, and its end.
         self._explaining: tuple[Any, asyncio.Future[Explanation]] | None = None
@@ -183,11 +192,19 @@ class Gate:
         if faults:
             return refusal("schema", *faults)
         self._writer.note(client)
-        if tool.writes:
+        if not tool.writes:
+            return await tool.call(client, tool.shape.converted(data))
+        write = _Write(client)
+        self._writes.append(write)
+        try:
             await self.expire()
+            if write.ended:
+                return refusal("writer", "the session of the client has ended")
             if not self._writer.admits(client):
                 return refusal("writer", f"{self._writer.holder} is the writer")
-        return await tool.call(client, tool.shape.converted(data))
+            return await tool.call(client, tool.shape.converted(data))
+        finally:
+            self._writes.remove(write)
 
     def note(self, client: str, name: str, data: Any, answer: Mapping[str, Any]) -> None:
         """Log a call."""
@@ -201,16 +218,19 @@ class Gate:
 
     async def leave(self, client: str) -> None:
         """End the session of a client: stop what it has started."""
+        for write in self._writes:
+            write.ended |= write.client == client
         if self._writer.leave(client):
             await self._on_node(self.layer.release)
             self.note(client, "", None, {"verdict": "released"})
 
     async def expire(self) -> None:
-        """End the role of a writer that has been silent for too long. A writer waits for its running goal."""
+        """End the role of a writer that has been silent for too long. A writer waits for its running call and goal."""
         holder = self._writer.holder
         if holder is None or not self._writer.is_silent:
             return
-        if await self._on_node(lambda: any(action.runs for action in self._actions.values())):
+        writes = any(write.client == holder for write in self._writes)
+        if writes or await self._on_node(lambda: any(action.runs for action in self._actions.values())):
             self._writer.note(holder)
         else:
             await self.leave(holder)

@@ -333,6 +333,32 @@ def test_a_silent_writer_stops_and_loses_its_role(tmp_path: Path) -> None:
     run(tmp_path, script)
 
 
+def test_a_writer_keeps_its_role_during_a_call(tmp_path: Path) -> None:
+    async def script(client: Client, bench: Bench) -> None:
+        now = [0.0]
+        bench.gate._writer.clock = lambda: now[0]
+        calling = asyncio.create_task(bench.gate.call("slow", "Lamp_light", {"data": True}))
+        while bench.gate._writer.holder is None:
+            await asyncio.sleep(0)
+        now[0] = 100
+        await bench.gate.expire()
+        assert (await call(client, "Base_horn"))["reason"] == "writer"
+        assert (await calling)["verdict"] in {"answered", "failed"}
+        now[0] = 200
+        assert (await call(client, "Base_horn"))["verdict"] == "sent"
+
+    run(tmp_path, script)
+
+
+def test_a_call_whose_session_has_ended_sends_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    async def script(client: Client, bench: Bench) -> None:  # noqa: ARG001
+        monkeypatch.setattr(bench.gate, "expire", lambda: bench.gate.leave("gone"))
+        assert (await bench.gate.call("gone", "Base_horn", {}))["because"] == ["the session of the client has ended"]
+        assert bench.received() == []
+
+    run(tmp_path, script)
+
+
 def test_release_stops_what_the_writer_has_started(tmp_path: Path) -> None:
     async def script(client: Client, bench: Bench) -> None:
         await call(client, "Base_velocity", linear={"x": 0.75})
