@@ -429,7 +429,7 @@ class Judge(EventHandler):
             self._control.perform(self._names[client.cancel])
 
     def adopt(self, client: rosgraph.ActionClient) -> None:
-        """Note that a goal is active that the model does not know: its request happens without a judgement."""
+        """Note that a goal is active that the model does not know: its request happens without a judgment."""
         name = self._names[client.request.event]
         if self._has_transition(name, with_data=False):
             with self._batch():

@@ -46,8 +46,8 @@ def _remappings(_context: click.Context, _parameter: click.Parameter, texts: Seq
 
 
 @dataclass(frozen=True)
-class Judgement:
-    """Options of a judgement: the state at the start, the tolerance in milliseconds, and the names of the recording."""
+class Judgment:
+    """Options of a judgment: the state at the start, the tolerance in milliseconds, and the names of the recording."""
 
     state: str | None = None
     tolerance: float = TOLERANCE_MS
@@ -56,7 +56,7 @@ class Judgement:
 
 
 def judging(command: Callable[..., None]) -> Callable[..., None]:
-    """Add the options of a judgement to a command, which receives them as `judgement`."""
+    """Add the options of a judgment to a command, which receives them as `judgment`."""
 
     @click.option(
         "--from-state",
@@ -83,12 +83,12 @@ def judging(command: Callable[..., None]) -> Callable[..., None]:
         help="The recording has the topic, service or action TO in place of FROM; repeatable.",
     )
     @wraps(command)
-    def with_judgement(
+    def with_judgment(
         *, state: str | None, tolerance: float, namespace: str, remappings: Mapping[str, str], **options: Any
     ) -> None:
-        command(judgement=Judgement(state, tolerance, namespace, remappings), **options)
+        command(judgment=Judgment(state, tolerance, namespace, remappings), **options)
 
-    return with_judgement
+    return with_judgment
 
 
 @click.command("audit")
@@ -104,7 +104,7 @@ def command(
     model: str,
     recording: str,
     as_object: bool,
-    judgement: Judgement,
+    judgment: Judgment,
     parameter_texts: Sequence[str],
     chosen: str | None,
     paths: Paths,
@@ -129,7 +129,7 @@ def command(
         set_parameters(models.rosgraph, parameter_texts)
         settings = read_configuration(model, chosen, report)
         supervise_models(models, report)
-    judge = judge_of(models, settings, recording, judgement)
+    judge = judge_of(models, settings, recording, judgment)
     fault = run(judge)
     audit = judge.audit
     if fault and audit.end is None:
@@ -149,7 +149,7 @@ def judge_of(
     models: Models,
     settings: Configuration,
     recording: str,
-    judgement: Judgement,
+    judgment: Judgment,
     watch: Watch | None = None,
 ) -> RecordingJudge | LogJudge:
     """Return the judge of a recording. Raises CallError."""
@@ -160,7 +160,7 @@ def judge_of(
     from robosc.run.audit.judge import safe_messages
 
     types = models.ros_types or RosTypes()
-    start = {} if judgement.state is None else _state(models.sct, judgement.state)
+    start = {} if judgment.state is None else _state(models.sct, judgment.state)
     if not is_recording(recording):
         graph = models.rosgraph
         safe = [] if graph is None else [event_name(message.event) for message in safe_messages(graph, settings)]
@@ -168,7 +168,7 @@ def judge_of(
     if models.rosgraph is None:
         raise CallError("the model has no ROS graph: use its .rosgraph.xmi or .rscd")
     options = AuditOptions(
-        start, round(judgement.tolerance * MILLISECOND), judgement.namespace, judgement.remappings, watch
+        start, round(judgment.tolerance * MILLISECOND), judgment.namespace, judgment.remappings, watch
     )
     return RecordingJudge(models.rosgraph, settings, types, recording, options)
 

@@ -15,7 +15,7 @@ from robosc.base.recordings import RecordingError, is_recording
 from robosc.run.simulation import Simulation
 from robosc.run.simulation.sources import PlayError, counterexample_steps, recorded_moments, script_steps
 from robosc.tools.cli import CallError, put, say
-from robosc.tools.cli.audit import Judgement, judge_of, judging, run
+from robosc.tools.cli.audit import Judgment, judge_of, judging, run
 from robosc.tools.cli.options import FILE, Paths, over_ros, paths, synthesizer
 from robosc.tools.cli.parameters import parameters, set_parameters
 from robosc.tools.cli.reading import read_configuration, read_models, supervise_models
@@ -70,7 +70,7 @@ def command(
     node: str | None,
     log: str | None,
     audited: str | None,
-    judgement: Judgement,
+    judgment: Judgment,
     refuted: str | None,
     seed: int,
     folder: str | None,
@@ -100,7 +100,7 @@ def command(
 
     Exit status: 0 success, 1 errors in the model or log, 2 a wrong call, 3 no supervisor exists.
     """
-    _check_sources(models, live, node, log, audited, judgement, refuted, folder)
+    _check_sources(models, live, node, log, audited, judgment, refuted, folder)
     try:
         from robosc.tools import view
     except ModuleNotFoundError as error:
@@ -115,7 +115,7 @@ def command(
             supervise_models(robot, report)
             simulation = Simulation(robot.sct, robot.rosgraph, robot.ros_types)
             if audited is not None:
-                judged = partial(judge_of, robot, settings, audited, judgement)
+                judged = partial(judge_of, robot, settings, audited, judgment)
                 record: Moments = _audited(simulation, robot.rosgraph, judged)
             elif not live:
                 record = _record(simulation, robot.rosgraph, log, node, refuted, seed, report)
@@ -146,14 +146,14 @@ def _check_sources(
     node: str | None,
     log: str | None,
     audited: str | None,
-    judgement: Judgement,
+    judgment: Judgment,
     refuted: str | None,
     folder: str | None,
 ) -> None:
     """Raise UsageError for options that exclude each other."""
     if sum([live, log is not None, audited is not None, refuted is not None]) > 1:
         raise click.UsageError("--ros2, --log, --audit and --trace exclude each other")
-    if audited is None and judgement != Judgement():
+    if audited is None and judgment != Judgment():
         raise click.UsageError("--from-state, --tolerance, --namespace and --remap need --audit")
     if live and folder is not None:
         raise click.UsageError("a running robot cannot be exported: record it, and export the recording with --log")
