@@ -75,9 +75,11 @@ def test_neovim(folder: Path, nth: int, version: tuple[int, int]) -> None:
     look = (
         f"vim.wait({LONGEST * 1000}, function() return #vim.diagnostic.get(0) > 0 end, 50)"
         " for _, found in ipairs(vim.diagnostic.get(0)) do print(found.message) end"
+        ' print("comments: " .. vim.bo.commentstring)'
     )
     said = run(folder, program, "--headless", "-u", "init.lua", "cart.rscd", "-c", f"lua {look}", "-c", "qa!")
     assert SAID in said
+    assert "comments: // %s" in said
 
 
 def test_emacs(folder: Path) -> None:
