@@ -282,12 +282,12 @@ OUTSIDE: Mapping[str, Outside] = {
         f"{_LIMITS}::test_order",
     ),
     "a limit applies wherever the robot is": Outside(
-        *(_COMPOSER, "if limit.condition is None or self.data.value(limit.condition, message):", "if True:"),
+        *(_COMPOSER, "if condition is None or self.data.value(condition, message):", "if True:"),
         f"{_LIMITS}::test_applies",
     ),
     "a limit reads the data before all limits": Outside(
-        *(_COMPOSER, "limit.fields, message, deepcopy(message), fields)"),
-        "limit.fields, message, self.__dict__.setdefault('first', deepcopy(message)), fields)",
+        *(_COMPOSER, "assignments, message, deepcopy(message) if hands_on else message, fields)"),
+        "assignments, message, self.__dict__.setdefault('first', deepcopy(message)), fields)",
         f"{_LIMITS}::test_applies",
     ),
     "the node does not check assumptions": Outside(
