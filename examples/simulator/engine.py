@@ -359,6 +359,9 @@ class Sent:
     def __setattr__(self, name, value):
         self._data[name] = value
 
+    def __copy__(self):
+        return Sent(dict(self._data))
+
 
 def plain(value):
     """Return data as nested dicts, including received data that is forwarded in it."""
