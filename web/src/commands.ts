@@ -31,13 +31,15 @@ export class CommandsView {
   ) {
     const list = byId("commands", HTMLUListElement);
     for (const name of description.commands) list.append(this.command(name));
-    const requirements = byId("requirements", HTMLUListElement);
-    for (const requirement of description.requirements) {
-      const name = requirement.name === "" ? "" : html("strong", {}, `${requirement.name} `);
-      const link = html("button", { type: "button", class: "link", onclick: () => goTo(requirement.place) }, name, requirement.text);
-      requirements.append(html("li", {}, link));
+    for (const kind of ["requirements", "properties"] as const) {
+      const statements = byId(kind, HTMLUListElement);
+      for (const { name, text, place } of description[kind]) {
+        const title = name === "" ? "" : html("strong", {}, `${name} `);
+        const link = html("button", { type: "button", class: "link", onclick: () => goTo(place) }, title, text);
+        statements.append(html("li", {}, link));
+      }
+      byId(`${kind}-section`, HTMLElement).hidden = description[kind].length === 0;
     }
-    byId("requirements-section", HTMLElement).hidden = description.requirements.length === 0;
     const findings = byId("findings", HTMLUListElement);
     for (const finding of description.findings) {
       const link = html("button", { type: "button", class: "link", onclick: () => goTo(finding.place) }, ...worded(finding.message));

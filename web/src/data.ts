@@ -94,6 +94,10 @@ export interface Endpoint {
 
 export interface Description {
   robot: string;
+  /** Source of the moments in words: a simulation, a log, a counterexample. */
+  source: string;
+  /** Number of the moment that violates a property. */
+  violation: number | null;
   /** The names of all robots on the server. */
   robots?: string[];
   /** Whether the server accepts actions. */
@@ -102,6 +106,7 @@ export interface Description {
   events: Record<string, Event>;
   commands: string[];
   requirements: Requirement[];
+  properties: Requirement[];
   findings: Finding[];
   communication: Endpoint[];
   files: { name: string; lines: [string, string][][] }[];

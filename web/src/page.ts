@@ -57,6 +57,9 @@ class Page {
     this.run = new Run(isServed && !this.acts ? MOST : Infinity);
     document.title = `${description.robot} – RoboSC`;
     byId("robot-name", HTMLElement).textContent = description.robot;
+    const source = byId("source", HTMLElement);
+    source.textContent = description.source;
+    source.classList.toggle("fault", description.violation !== null);
     this.offer(description.robots ?? []);
     this.text = new TextView(description, (file, line) => this.find(file, line));
     this.robot = new RobotView(description, (place) => this.text.goTo(place));

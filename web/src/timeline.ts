@@ -84,9 +84,11 @@ export class TimelineView {
     const items = [];
     for (let number = first; number <= Math.min(last, first + 2 * AROUND); number++) {
       const moment = this.run.moment(number);
-      const button = html("button", { type: "button", class: "link", onclick: () => this.choose(number) }, told(moment));
+      const violates = number === this.description.violation;
+      const text = violates ? `${told(moment)}: violates the property` : told(moment);
+      const button = html("button", { type: "button", class: "link", onclick: () => this.choose(number) }, text);
       if (number === shown) button.setAttribute("aria-current", "true");
-      items.push(html("li", { value: number, class: moment.by === undefined ? "" : "refused" }, button));
+      items.push(html("li", { value: number, class: moment.by === undefined && !violates ? "" : "refused" }, button));
     }
     this.list.replaceChildren(...items);
     const here = items[shown - first];
@@ -135,11 +137,16 @@ export class TimelineView {
     });
     const bottom = lanes.length * LANE + 2;
     context.fillStyle = colour("--text");
-    context.fillText("refused", 2, bottom + 11, NAMES - 8);
+    context.fillText(this.description.violation === null ? "refused" : "refused, violated", 2, bottom + 11, NAMES - 8);
     context.fillStyle = colour("--forbidden");
     columns.forEach((column, index) => {
       if (column.refused) context.fillRect(NAMES + index * step, bottom, Math.max(2, step - 1), LANE - 3);
     });
+    const { violation } = this.description;
+    if (violation !== null && first <= violation && violation <= last) {
+      context.fillStyle = colour("--forbidden");
+      context.fillRect(NAMES + (violation - first) * step, bottom, Math.max(2, step - 1), LANE - 3);
+    }
     context.fillStyle = colour("--shown");
     context.fillRect(NAMES + (shown - first + 0.5) * step - 1, 0, 2, bottom + LANE);
     const now = this.run.at(shown);
@@ -209,12 +216,12 @@ function drawLane(
   colour: (text: string) => string,
   { left, top, step, text }: { left: number; top: number; step: number; text: string | null },
 ): void {
-  const inset = text === null ? 3 : 0;
   for (let begin = 0; begin < texts.length; ) {
     const here = texts[begin]!;
     let end = begin + 1;
     while (end < texts.length && texts[end] === here) end++;
     context.fillStyle = colour(here);
+    const inset = text === null ? (INSETS[here] ?? 3) : 0;
     context.fillRect(left + begin * step, top + inset, (end - begin) * step - (step > 3 ? 1 : 0), LANE - 3 - 2 * inset);
     if (text !== null && (end - begin) * step > 24) {
       context.fillStyle = text;
@@ -226,6 +233,9 @@ function drawLane(
 
 /** The color of each verdict on a command. */
 const VERDICTS: Record<string, string> = { allowed: "allowed-lane", forbidden: "forbidden-lane", unready: "unready-lane" };
+
+/** The height of the bar of a verdict is a second sign beside its color: the space above and below it. */
+const INSETS: Record<string, number> = { allowed: 0, unready: 4, forbidden: 5 };
 
 /** Draws numbers as steps and returns their range as a text. */
 function drawPlot(canvas: HTMLCanvasElement, values: number[], shown: number, line: string, here: string): string {

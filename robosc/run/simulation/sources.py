@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from difflib import get_close_matches
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from robosc.analysis.verify import Outcome, verify_system
 from robosc.base.files import reading as files
@@ -79,8 +79,17 @@ def recorded_moments(simulation: Simulation, path: str, node: str | None) -> Ite
         raise PlayError(f"{path} has no reports of this robot on {source}{f': {fault}' if fault else ''}")
 
 
-def counterexample_steps(simulation: Simulation, name_of_property: str | None) -> tuple[list[ScriptStep], str]:
-    """Return a counterexample of a property and the explanation of `verify`; None means the first refuted one.
+class Counterexample(NamedTuple):
+    """Steps that refute a property: the state after the first `violation` of them violates it. `explanation`: why."""
+
+    property: str
+    steps: list[ScriptStep]
+    violation: int
+    explanation: str
+
+
+def counterexample_of(simulation: Simulation, name_of_property: str | None) -> Counterexample:
+    """Return a counterexample of a property; None means the first refuted one.
 
     Irrelevant data has the defaults of ROS. Raises PlayError if there is no counterexample.
     """
@@ -95,7 +104,8 @@ def counterexample_steps(simulation: Simulation, name_of_property: str | None) -
     )
     if refuted is None:
         raise PlayError("no property is refuted, so there is no counterexample")
-    return _steps(simulation, [*refuted.trace, *refuted.onwards]), f"{refuted.property}: {refuted.explanation}\n"
+    steps = _steps(simulation, [*refuted.trace, *refuted.onwards])
+    return Counterexample(refuted.property, steps, len(refuted.trace), refuted.explanation)
 
 
 def _is_called(verified: str, name: str) -> bool:

@@ -13,7 +13,7 @@ import click
 from robosc.base.files.writing import write
 from robosc.base.recordings import RecordingError, is_recording
 from robosc.run.simulation import Simulation
-from robosc.run.simulation.sources import PlayError, counterexample_steps, recorded_moments, script_steps
+from robosc.run.simulation.sources import PlayError, counterexample_of, recorded_moments, script_steps
 from robosc.tools.cli import CallError, put, say
 from robosc.tools.cli.audit import Judgment, judge_of, judging, run
 from robosc.tools.cli.options import FILE, Paths, over_ros, paths, synthesizer
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from robosc.language.configuration import Configuration
     from robosc.model import rosgraph
     from robosc.run.audit import LogJudge, RecordingJudge
-    from robosc.tools.view import Live, Moments, Record
+    from robosc.tools.view import Live, Moments, Record, Source
 
 
 @click.command("view")
@@ -115,19 +115,21 @@ def command(
             supervise_models(robot, report)
             simulation = Simulation(robot.sct, robot.rosgraph, robot.ros_types)
             if audited is not None:
+                source = view.Source(f"Audit of {audited}")
                 judged = partial(judge_of, robot, settings, audited, judgment)
                 record: Moments = _audited(simulation, robot.rosgraph, judged)
             elif not live:
-                record = _record(simulation, robot.rosgraph, log, node, refuted, seed, report)
+                record, source = _record(simulation, robot.rosgraph, log, node, refuted, seed, report)
             else:
                 if robot.rosgraph is None:
                     raise CallError(
                         f"{model} has no ROS graph, so no node reports its state: use its .rosgraph.xmi or .rscd"
                     )
                 nodes = [node] if node else _nodes(robot.rosgraph, settings)
+                source = view.Source(f"Live: {' or '.join(nodes)}")
                 record = view.Live(simulation, robot.rosgraph, " or ".join(nodes))
                 heard.append((nodes, record))
-        shown.append((view.describe(robot, report.texts, report.findings), record))
+        shown.append((view.describe(robot, report.texts, report.findings, source), record))
     try:
         if folder is not None:
             ((description, record),) = shown
@@ -190,19 +192,23 @@ def _record(
     refuted: str | None,
     seed: int,
     report: Report,
-) -> Record:
-    """Return the record to show. Ends the report if the log has faults."""
+) -> tuple[Record, Source]:
+    """Return the record to show, and its source. Ends the report if the log has faults."""
     from robosc.tools import view
 
     try:
         if log is not None and is_recording(log):
-            return view.Record(simulation, graph, seed=seed, recorded=recorded_moments(simulation, log, node))
+            recorded = view.Record(simulation, graph, seed=seed, recorded=recorded_moments(simulation, log, node))
+            return recorded, view.Source(f"Recording {log}")
         if log is not None:
-            return view.Record(simulation, graph, script_steps(simulation, log), seed)
+            return view.Record(simulation, graph, script_steps(simulation, log), seed), view.Source(
+                f"Log or script {log}"
+            )
         if refuted is not None:
-            steps, message = counterexample_steps(simulation, None if refuted == "any" else refuted)
-            say(message, err=True, nl=False)
-            return view.Record(simulation, graph, steps, seed)
+            example = counterexample_of(simulation, None if refuted == "any" else refuted)
+            say(f"{example.property}: {example.explanation}", err=True)
+            text = f"Counterexample to {example.property}: {example.explanation}"
+            return view.Record(simulation, graph, example.steps, seed), view.Source(text, example.violation)
     except RecordingError as error:
         raise CallError(str(error)) from None
     except PlayError as error:
@@ -210,7 +216,7 @@ def _record(
             raise CallError(str(error)) from None
         report.add(error.findings, error.texts)
         report.stop_on_errors()
-    return view.Record(simulation, graph, seed=seed)
+    return view.Record(simulation, graph, seed=seed), view.SIMULATION
 
 
 def _audited(

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from robosc.run.simulation.sources import counterexample_steps, script_steps
+from robosc.run.simulation.sources import counterexample_of, script_steps
 
 if TYPE_CHECKING:
     from robosc.base.diagnostics import Diagnostic
@@ -93,5 +93,6 @@ class Launch:
             return script_steps(simulation, self.script), ""
         if self.counterexample is not None:
             name = self.counterexample if isinstance(self.counterexample, str) else None
-            return counterexample_steps(simulation, name)
+            refutation = counterexample_of(simulation, name)
+            return refutation.steps, f"{refutation.property}: {refutation.explanation}\n"
         return None, ""

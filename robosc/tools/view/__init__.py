@@ -5,11 +5,11 @@ of a robot. `server` serves both with the page, and `export` writes them as file
 itself is TypeScript, in `web/`.
 """
 
-from robosc.tools.view.description import describe
+from robosc.tools.view.description import SIMULATION, Source, describe
 from robosc.tools.view.export import export
 from robosc.tools.view.live import Live
 from robosc.tools.view.moments import Moments
 from robosc.tools.view.page import PageError
 from robosc.tools.view.record import Record
 
-__all__ = ["Live", "Moments", "PageError", "Record", "describe", "export"]
+__all__ = ["SIMULATION", "Live", "Moments", "PageError", "Record", "Source", "describe", "export"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from itertools import pairwise
 from pathlib import PurePath
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robosc.analysis.wording import name, words
 from robosc.base.diagnostics import in_order
@@ -38,7 +38,19 @@ _KINDS = {ex.BooleanType: "checkbox", ex.IntegerType: "whole", ex.DoubleType: "n
 _LONGEST = 60
 
 
-def describe(models: Models, texts: Mapping[str, str], findings: Iterable[Diagnostic] = ()) -> dict[str, Any]:
+class Source(NamedTuple):
+    """Source of a run in words. `violation`: number of the moment that violates a property, None for other runs."""
+
+    text: str
+    violation: int | None = None
+
+
+SIMULATION = Source("Simulation")
+
+
+def describe(
+    models: Models, texts: Mapping[str, str], findings: Iterable[Diagnostic] = (), source: Source = SIMULATION
+) -> dict[str, Any]:
     """Return the description as JSON data; `texts` are the texts of the model's files by their paths.
 
     `findings` are those about the model. The page shows them in order, consequences below their cause.
@@ -77,10 +89,21 @@ def describe(models: Models, texts: Mapping[str, str], findings: Iterable[Diagno
     ]
     return {
         "robot": model.name,
+        "source": source.text,
+        "violation": source.violation,
         "automata": automata,
         "events": events,
         "commands": [event_name(event) for event in commands_of(model)],
         "requirements": requirements + invariants + assumed,
+        "properties": [
+            {
+                "event": "",
+                "name": statement.name or "",
+                "text": statement.text or "",
+                "place": describer.place(statement),
+            }
+            for statement in model.properties
+        ],
         "findings": [
             {
                 "message": finding.message,

@@ -86,6 +86,12 @@ def test_a_counterexample_leads_to_where_the_property_does_not_hold(chromium: An
             page.locator("#moment").fill(str(moment))
             at(page, moment)
             assert shown(page) == expected[moment]
+        page.locator("#moment").fill(str(last))
+        at(page, last)
+        assert page.locator("#source").inner_text().startswith("Counterexample to property SP1")
+        assert page.locator("#happened .refused").inner_text().endswith(": violates the property")
+        assert page.locator("#happened [aria-current]").inner_text().endswith(": violates the property")
+        assert page.locator("#properties li").all_inner_texts() == [f"SP1 {PROPERTY.strip()}"]
     assert expected[-1]["states"] == [["Barrier", "opened", ["opened"]]]
     assert expected[-1]["variables"] == {"Barrier.cars": "3"}
 
