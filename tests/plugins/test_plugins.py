@@ -229,7 +229,10 @@ def test_the_debugger_takes_another_synthesizer(broken, tmp_path: Path) -> None:
 
 
 #: Commands that need a supervisor.
-SYNTHESIZING = ("synthesize", "transform", "verify", "explain", "simulate", "test", "run", "view", "report", "dap")
+SYNTHESIZING = (
+    *("synthesize", "transform", "verify", "explain", "simulate", "test"),
+    *("run", "gate", "audit", "view", "report", "dap"),
+)
 
 
 def test_every_command_that_synthesizes_takes_another_synthesizer() -> None:
