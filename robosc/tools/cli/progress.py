@@ -117,8 +117,10 @@ def interruptible() -> Iterator[None]:
 
     Python handles a signal only between two operations, and an operation on decision diagrams may take minutes. The
     block must not hold resources that need cleanup. The process ends with the status for interrupts.
+
+    A browser has no threads, and needs none: its decision diagrams are in pure Python.
     """
-    if current_thread() is not main_thread():
+    if current_thread() is not main_thread() or sys.platform == "emscripten":
         yield
         return
     import socket
