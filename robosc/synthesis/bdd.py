@@ -1,13 +1,13 @@
-"""Wrapper of the library of decision diagrams, `oxidd.bcdd`, on one thread; no other module uses the library."""
+"""Wrapper of the library of decision diagrams, `oxidd.bcdd`, on one thread; no other module uses the library.
+
+Where the library is not installed, `pure_diagrams` replaces it, with the same results in more time.
+"""
 
 from __future__ import annotations
 
 from functools import reduce
 from operator import and_, or_
 from typing import TYPE_CHECKING, TypeAlias, cast
-
-from oxidd.bcdd import BCDDFunction, BCDDManager
-from oxidd.util import BooleanOperator, DDMemoryError
 
 from robosc.synthesis.memory import TooFewAddressesError, address_space, limit_memory
 from robosc.synthesis.statistics import Statistics
@@ -18,6 +18,18 @@ if TYPE_CHECKING:
 
     T = TypeVar("T")
 
+try:
+    from oxidd.bcdd import BCDDFunction, BCDDManager
+    from oxidd.util import BooleanOperator, DDMemoryError
+
+    #: Whether the decision diagrams are those in pure Python.
+    IS_PURE = False
+except ImportError:
+    if not TYPE_CHECKING:
+        from robosc.synthesis.pure_diagrams import BCDDFunction, BCDDManager, BooleanOperator, DDMemoryError
+
+    IS_PURE = True
+
 #: Error of an operation that runs out of room for nodes.
 OutOfRoomError = DDMemoryError
 #: Boolean function over the variables of its `Diagrams`. Equal functions compare equal and have the same hash. It
@@ -25,7 +37,7 @@ OutOfRoomError = DDMemoryError
 Diagram: TypeAlias = BCDDFunction
 
 #: Measured size of a node with its share of the operation cache, in bytes.
-_BYTES_PER_NODE = 40
+_BYTES_PER_NODE = 500 if IS_PURE else 40
 #: Measured address space of the library without nodes, in bytes. Most of it is the stack of its thread.
 _LIBRARY = (1 << 30) + (192 << 20)
 _FIRST_CAPACITY = 1 << 18
@@ -126,9 +138,9 @@ def split(diagram: Diagram, level: int) -> tuple[Diagram, Diagram]:
 
 
 def _refuse_where_addresses_lack(capacity: int) -> None:
-    """Raise TooFewAddressesError if the address space is too small: the library would end the process."""
+    """Raise TooFewAddressesError if the address space is too small for the library, which would end the process."""
     needed, left = _LIBRARY + capacity * _BYTES_PER_NODE, address_space()
-    if left is not None and left < needed:
+    if not IS_PURE and left is not None and left < needed:
         raise TooFewAddressesError(
             f"decision diagrams need {needed >> 20} MiB of addresses, and `ulimit -v` leaves {max(left, 0) >> 20}"
         )

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from threading import Event, Lock, Thread, get_ident
 from typing import TYPE_CHECKING
 
-if sys.platform != "win32":
+if sys.platform not in {"win32", "emscripten"}:
     import resource
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 #: Minimum additional memory that the process may take, in bytes.
 _LEAST = 64 << 20
 _SECONDS = 0.05
-_PAGE = 4096 if sys.platform == "win32" else resource.getpagesize()
+_PAGE = 4096 if sys.platform in {"win32", "emscripten"} else resource.getpagesize()
 
 
 class TooFewAddressesError(MemoryError):
@@ -78,7 +78,7 @@ def resident() -> int | None:
 
 def address_space() -> int | None:
     """Return the remaining address space of the process in bytes, or None if it is unlimited."""
-    if sys.platform == "win32":
+    if sys.platform in {"win32", "emscripten"}:
         return None
     most = resource.getrlimit(resource.RLIMIT_AS)[0]
     if most == resource.RLIM_INFINITY:

@@ -23,7 +23,7 @@ from robosc.base.diagnostics.visible import visible
 from robosc.model.places import place
 from robosc.tools.cli import CallError, put, say
 from robosc.tools.cli.options import Paths, model, paths, synthesizer
-from robosc.tools.cli.progress import progress
+from robosc.tools.cli.progress import note_slow_diagrams, progress
 from robosc.tools.cli.reading import read_models, supervise_otherwise
 from robosc.tools.cli.report import Report
 
@@ -83,6 +83,7 @@ def command(
     with Report(aside=True) as report:
         plants = read_models(model, paths, report, cif=True).sct
         supervise_otherwise(plants)
+        note_slow_diagrams()
         with progress("exploring the states of the robot"):
             answer = explore(plants, emptiness if why_empty else question(plants, event, state, why_never))
         if answer is None and not why_empty:

@@ -6,12 +6,13 @@ import os
 import signal
 import sys
 from contextlib import contextmanager
+from functools import cache
 from threading import Event, Thread, Timer, current_thread, main_thread
 from typing import TYPE_CHECKING
 
 from robosc.model import expression as ex
 from robosc.synthesis.memory import TooFewAddressesError
-from robosc.tools.cli import INTERRUPTED
+from robosc.tools.cli import INTERRUPTED, say
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -61,6 +62,15 @@ def progress(what: str | Callable[[], str]) -> Iterator[None]:
             progress.stop()
 
 
+@cache
+def note_slow_diagrams() -> None:
+    """Print a line, once, if synthesis runs without its library, which takes much longer for large models."""
+    from robosc.synthesis.bdd import IS_PURE
+
+    if IS_PURE:
+        say("decision diagrams in pure Python: install `oxidd` for speed", err=True)
+
+
 @contextmanager
 def show_progress(model: sct.SupervisoryControlModel) -> Iterator[Statistics]:
     """Show the progress of a model's synthesis in the `with` block, which fills these statistics.
@@ -69,6 +79,7 @@ def show_progress(model: sct.SupervisoryControlModel) -> Iterator[Statistics]:
     """
     from robosc.synthesis import Statistics
 
+    note_slow_diagrams()
     statistics = Statistics()
     try:
         with interruptible(), progress(lambda: _how_far(statistics)):
@@ -106,8 +117,10 @@ def interruptible() -> Iterator[None]:
 
     Python handles a signal only between two operations, and an operation on decision diagrams may take minutes. The
     block must not hold resources that need cleanup. The process ends with the status for interrupts.
+
+    A browser has no threads, and needs none: its decision diagrams are in pure Python.
     """
-    if current_thread() is not main_thread():
+    if current_thread() is not main_thread() or sys.platform == "emscripten":
         yield
         return
     import socket

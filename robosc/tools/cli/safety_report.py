@@ -13,7 +13,7 @@ from robosc.base.files import reading as files
 from robosc.base.files.writing import refuse, write_file
 from robosc.tools.cli import ERRORS_FOUND, interruption, put
 from robosc.tools.cli.options import Paths, configuration, model, paths, synthesizer
-from robosc.tools.cli.progress import progress
+from robosc.tools.cli.progress import note_slow_diagrams, progress
 from robosc.tools.cli.reading import read_configuration, read_models, supervise_models
 from robosc.tools.cli.report import Report
 
@@ -59,6 +59,7 @@ def command(
             if written:
                 refuse(written)
         supervise_models(models, report)
+        note_slow_diagrams()
         with progress("verifying"):
             verdicts = verify(models, settings)
         report.add(finding for verdict in verdicts for finding in verdict.findings)

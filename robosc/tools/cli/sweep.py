@@ -19,7 +19,7 @@ from robosc.language import configuration as config
 from robosc.language.libraries import declared_name, search_folders
 from robosc.tools.cli import WRONG_CALL, CallError, interruption, say
 from robosc.tools.cli.options import FILE, Paths, configuration, memory, paths
-from robosc.tools.cli.progress import progress
+from robosc.tools.cli.progress import note_slow_diagrams, progress
 from robosc.tools.cli.report import Report
 from robosc.tools.sweep.jobs import Job, absolute, inputs_of, perform
 from robosc.tools.sweep.results import Results, Row
@@ -207,6 +207,8 @@ def _do(planned: Mapping[str, Job], results: Results, jobs: int | None, cluster:
     before = len(planned) - len(rest)
     if before:
         say(f"{before} of {format_count(len(planned), 'job')} have results already", err=True)
+    if any(job.command != "check" for job in rest):
+        note_slow_diagrams()
     done = killed = 0
     try:
         with progress(lambda: f"{before + done} of {format_count(len(planned), 'job')} done"):

@@ -11,7 +11,7 @@ from robosc.analysis.wording import quote_requirements, words
 from robosc.model.places import place
 from robosc.synthesis.encoding import element_name
 from robosc.tools.cli import put, say
-from robosc.tools.cli.progress import progress
+from robosc.tools.cli.progress import note_slow_diagrams, progress
 
 if TYPE_CHECKING:
     from robosc.analysis.cost import EventCost
@@ -29,6 +29,7 @@ def show_cost(model: sct.SupervisoryControlModel, tuning: Tuning, memory: int, t
 
     Returns whether there is a supervisor.
     """
+    note_slow_diagrams()
     with progress("following the cost of synthesis"):
         cost = explain_cost(model, tuning, memory=memory)
     if as_json:

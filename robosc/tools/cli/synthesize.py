@@ -27,7 +27,7 @@ from robosc.tools.cli.report import Report
 from robosc.tools.cli.synthesis_cost import show_cost
 from robosc.tools.cli.tuning import chosen_tuning, tuning
 
-if sys.platform != "win32":
+if sys.platform not in {"win32", "emscripten"}:
     import resource
 
 if TYPE_CHECKING:
@@ -278,7 +278,7 @@ def _cost(statistics: Statistics) -> dict[str, Any]:
 
 def _peak_bytes() -> int | None:
     """Return the peak memory of the process in bytes. None if the system does not report it."""
-    if sys.platform == "win32":
+    if sys.platform in {"win32", "emscripten"}:
         return None
     most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     return most if sys.platform == "darwin" else most * 1024

@@ -34,7 +34,7 @@ from robosc.tools.cli.options import (
     robot_nodes,
     synthesizer,
 )
-from robosc.tools.cli.progress import progress
+from robosc.tools.cli.progress import note_slow_diagrams, progress
 from robosc.tools.cli.reading import read_configuration, read_models, supervise_models
 from robosc.tools.cli.report import Report
 from robosc.tools.cli.tuning import chosen_tuning, tuning
@@ -124,6 +124,7 @@ def command(
         if junit:
             refuse(junit)
         supervise_models(models, report)
+        note_slow_diagrams()
         steps = [""]
         with progress(lambda: f"verifying {steps[-1]}; robots with very many states take minutes"):
             verdicts = (

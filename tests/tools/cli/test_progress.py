@@ -5,14 +5,18 @@ import subprocess
 import sys
 import threading
 import time
+from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
 from robosc.model import sct
-from robosc.synthesis import Phase
+from robosc.synthesis import Phase, bdd
 from robosc.tools.cli import progress as module
 from robosc.tools.cli.progress import progress, show_progress
 from tests.sct_models import model, plant
+
+from .conftest import Run
 
 
 class Terminal(io.StringIO):
@@ -92,6 +96,31 @@ def test_too_little_memory(variable: str, hint: str) -> None:
     given = model([plant("p", {"a": []}, variables={"v": variable})])
     with pytest.raises(MemoryError, match=hint), show_progress(given):
         raise MemoryError
+
+
+@pytest.fixture
+def _pure(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    monkeypatch.setattr(bdd, "IS_PURE", True)
+    module.note_slow_diagrams.cache_clear()
+    yield
+    module.note_slow_diagrams.cache_clear()
+
+
+@pytest.mark.usefixtures("_pure")
+@pytest.mark.parametrize(
+    ("command", "times"),
+    [
+        (["synthesize"], 1),
+        (["synthesize", "--explain-cost"], 1),
+        (["explain", "--event=open"], 1),
+        (["verify"], 1),
+        (["check"], 0),
+        (["sweep", "synthesize", "--jobs=1"], 1),
+        (["sweep", "check", "--jobs=1"], 0),
+    ],
+)
+def test_slow_diagrams_are_mentioned_once(run: Run, door: Path, command: list[str], times: int) -> None:
+    assert run(*command, door).stderr.count("decision diagrams in pure Python: install `oxidd` for speed\n") == times
 
 
 #: One operation on decision diagrams that takes minutes: all bits of one number, then all of another.
