@@ -159,4 +159,4 @@ def test_keywords_stay_names() -> None:
 
 
 def test_wrong_words() -> None:
-    assert errors(desk("on error to start on response from inspect goto idle")) == [("result-type", 13)]
+    assert errors(desk("on error to start on response from inspect goto idle")) == [("result-type", 13)] * 2
