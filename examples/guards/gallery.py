@@ -38,8 +38,8 @@ class SpeedWorld(SmallWorld):
 class SpeedJudge(Judge):
     """At most 1 m/s, and 0.3 m/s while somebody is near."""
 
-    commands = {WHEELS: twist}  # noqa: RUF012
-    replaced = {WHEELS: STOP}  # noqa: RUF012
+    commands = {WHEELS: twist}
+    replaced = {WHEELS: STOP}
 
     def __init__(self, time=0.0):
         super().__init__(time)
@@ -95,8 +95,8 @@ class StopWorld(SmallWorld):
 class StopJudge(Judge):
     """Nothing begins or goes on while the button is pressed or silent, and until somebody agrees."""
 
-    commands = {WHEELS: twist, NAVIGATE: destination(5.0, 5.0), FOLLOW: nothing}  # noqa: RUF012
-    replaced = {WHEELS: STOP}  # noqa: RUF012
+    commands = {WHEELS: twist, NAVIGATE: destination(5.0, 5.0), FOLLOW: nothing}
+    replaced = {WHEELS: STOP}
 
     def __init__(self, time=0.0):
         super().__init__(time)
@@ -118,7 +118,7 @@ TELEOP, AUTONOMY = "/teleop/cmd_vel", "/autonomy/cmd_vel"
 class TeleopJudge(Judge):
     """A person has priority until a second after the last velocity."""
 
-    commands = {TELEOP: twist, AUTONOMY: twist}  # noqa: RUF012
+    commands = {TELEOP: twist, AUTONOMY: twist}
 
     def permits(self, name, data):
         """Return whether nobody steers, for the program."""
@@ -152,7 +152,7 @@ class DockingWorld(SmallWorld):
 class DockingJudge(Judge):
     """One server at a time moves the base. A lost goal may go on until a goal of the same server succeeds."""
 
-    commands = {NAVIGATE: destination(5.0, 5.0), DOCK: nothing, UNDOCK: nothing}  # noqa: RUF012
+    commands = {NAVIGATE: destination(5.0, 5.0), DOCK: nothing, UNDOCK: nothing}
     groups = ({NAVIGATE}, {DOCK, UNDOCK})
 
     def __init__(self, time=0.0):
@@ -200,8 +200,8 @@ class ArmWorld(SmallWorld):
 class ArmJudge(Judge):
     """The arm begins after half a second without velocities and a report that the base stands."""
 
-    commands = {WHEELS: twist, FOLLOW: nothing}  # noqa: RUF012
-    replaced = {WHEELS: STOP}  # noqa: RUF012
+    commands = {WHEELS: twist, FOLLOW: nothing}
+    replaced = {WHEELS: STOP}
 
     def __init__(self, time=0.0):
         super().__init__(time)
@@ -271,7 +271,7 @@ class FenceWorld(SmallWorld):
 class FenceJudge(Judge):
     """Goals lie half a meter inside the fence, and the robot is inside it."""
 
-    commands = {NAVIGATE: destination(22.0, 12.0)}  # noqa: RUF012
+    commands = {NAVIGATE: destination(22.0, 12.0)}
 
     def __init__(self, time=0.0):
         super().__init__(time)
@@ -326,8 +326,8 @@ class LocalizationWorld(SmallWorld):
 class LocalizationJudge(Judge):
     """Nav2 drives only with a known place. Velocities without one may only turn."""
 
-    commands = {WHEELS: twist, NAVIGATE: destination(5.0, 5.0)}  # noqa: RUF012
-    replaced = {WHEELS: STOP}  # noqa: RUF012
+    commands = {WHEELS: twist, NAVIGATE: destination(5.0, 5.0)}
+    replaced = {WHEELS: STOP}
 
     def __init__(self, time=0.0):
         super().__init__(time)
@@ -353,7 +353,7 @@ NAVIGATION, FOLLOWER = "/navigation/cmd_vel", "/follower/cmd_vel"
 class PublisherJudge(Judge):
     """One of two programs has the wheels until half a second after its last velocity."""
 
-    commands = {NAVIGATION: twist, FOLLOWER: twist}  # noqa: RUF012
+    commands = {NAVIGATION: twist, FOLLOWER: twist}
 
     def permits(self, name, data):
         """Return whether the other one is silent."""
@@ -382,8 +382,8 @@ class StaleWorld(SmallWorld):
 class StaleJudge(Judge):
     """A velocity with an old stamp, or one of the future, becomes a stop. Without odometry, nothing passes."""
 
-    commands = {WHEELS: stamped_twist}  # noqa: RUF012
-    replaced = {WHEELS: {"header": {"stamp": stamp(0.0), "frame_id": ""}, "twist": STOP}}  # noqa: RUF012
+    commands = {WHEELS: stamped_twist}
+    replaced = {WHEELS: {"header": {"stamp": stamp(0.0), "frame_id": ""}, "twist": STOP}}
 
     def __init__(self, time=0.0):
         super().__init__(time)
@@ -501,7 +501,7 @@ class GripperWorld(SmallWorld):
 class GripperJudge(Judge):
     """A gripper that may hold something opens only above the place."""
 
-    commands = {GRIP: grip}  # noqa: RUF012
+    commands = {GRIP: grip}
 
     def __init__(self, time=0.0):
         super().__init__(time)
@@ -559,8 +559,8 @@ class CorridorWorld(SmallWorld):
 class CorridorJudge(Judge):
     """A robot before the corridor drives on only if no other one is in it, or may be in it."""
 
-    commands = {robot + WHEELS: twist for robot in ROBOTS}  # noqa: RUF012
-    replaced = {robot + WHEELS: STOP for robot in ROBOTS}  # noqa: RUF012
+    commands = {robot + WHEELS: twist for robot in ROBOTS}
+    replaced = {robot + WHEELS: STOP for robot in ROBOTS}
 
     def __init__(self, time=0.0):
         super().__init__(time)

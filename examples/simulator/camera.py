@@ -40,7 +40,7 @@ class LineDetector(Device):
     """A detector that measures how far right the middle of the yellow line before the robot is."""
 
     period = 0.06
-    says = {"/correction": NUMBER, "/no_line": EMPTY}  # noqa: RUF012
+    says = {"/correction": NUMBER, "/no_line": EMPTY}
     #: The visible part of the floor: its distance, its depth to both sides, and its half width.
     ahead, depth, half_width = 0.2, 0.06, 0.5
 
@@ -64,7 +64,7 @@ class LineDetector(Device):
 class BallDetector(Device):
     """A detector of a red ball: its place, whether it slips to a side, and whether it touches the robot."""
 
-    says = {  # noqa: RUF012
+    says = {
         "/ball_correction": NUMBER,
         "/no_ball": EMPTY,
         "/needs_adjustment": EMPTY,
@@ -94,7 +94,7 @@ class BallDetector(Device):
 class GoalDetector(Device):
     """A detector of something green: the goal's back wall."""
 
-    says = {"/goal_correction": NUMBER, "/no_goal": EMPTY}  # noqa: RUF012
+    says = {"/goal_correction": NUMBER, "/no_goal": EMPTY}
 
     def __init__(self, noise):
         """Create the detector. `noise` returns an error in pixels."""
@@ -113,7 +113,7 @@ class ObjectDetector(Device):
     """Darknet: the things that it can name, the most certain first. Without any it publishes no boxes."""
 
     period = 0.2
-    says = {  # noqa: RUF012
+    says = {
         "/darknet_ros/found_object": "darknet_ros_msgs/ObjectCount",
         "/darknet_ros/bounding_boxes": "darknet_ros_msgs/BoundingBoxes",
     }
@@ -136,7 +136,7 @@ class ObjectDetector(Device):
 class PersonDetector(Device):
     """YOLOX, configured for people: a list of boxes for each image, empty without a visible person."""
 
-    says = {"/bounding_boxes": "bboxes_ex_msgs/BoundingBoxes"}  # noqa: RUF012
+    says = {"/bounding_boxes": "bboxes_ex_msgs/BoundingBoxes"}
     reach = 4.0
 
     def say(self, world):

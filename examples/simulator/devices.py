@@ -22,10 +22,10 @@ class Device:
     """
 
     period = 0.1
-    says: dict[str, str] = {}  # noqa: RUF012  # a constant table
-    hears: dict[str, str] = {}  # noqa: RUF012
-    answers: dict[str, str] = {}  # noqa: RUF012
-    serves: dict[str, str] = {}  # noqa: RUF012
+    says: dict[str, str] = {}
+    hears: dict[str, str] = {}
+    answers: dict[str, str] = {}
+    serves: dict[str, str] = {}
 
     def ask(self, world, service, call):
         """Accept a call of one of the device's services, to be answered later."""
@@ -58,7 +58,7 @@ def header(world, frame):
 class Wheels(Device):
     """Wheels that drive at the last received velocity."""
 
-    hears = {"/cmd_vel": TWIST}  # noqa: RUF012
+    hears = {"/cmd_vel": TWIST}
 
     def hear(self, world, topic, data):
         """Set the velocity."""
@@ -69,7 +69,7 @@ class Wheels(Device):
 class Steps(Device):
     """Wheels that drive at each velocity for a tenth of a second (thesis section 6.3.9)."""
 
-    hears = {"/simple_movement": TWIST}  # noqa: RUF012
+    hears = {"/simple_movement": TWIST}
     length = 0.1
 
     def __init__(self):
@@ -91,7 +91,7 @@ class Odometry(Device):
     """The position of the robot according to the encoders of its wheels."""
 
     period = 0.1
-    says = {"/odom": "nav_msgs/Odometry"}  # noqa: RUF012
+    says = {"/odom": "nav_msgs/Odometry"}
 
     def say(self, world):
         """Return a pose in the frame of the start, and the speed."""
@@ -108,7 +108,7 @@ class Odometry(Device):
 class Lidar(Device):
     """360 rays, one per degree, counter-clockwise from straight ahead. A ray without a hit is infinite (REP 117)."""
 
-    says = {"/scan": "sensor_msgs/LaserScan"}  # noqa: RUF012
+    says = {"/scan": "sensor_msgs/LaserScan"}
 
     def __init__(self, noise):
         """Create the lidar. `noise` returns the error of each ray in meters."""
@@ -134,7 +134,7 @@ class Lidar(Device):
 class Button(Device):
     """An emergency stop that repeats whether it is pressed, or is `silent`, and a button to continue."""
 
-    says = {STOP: BOOLEAN, GO_ON: EMPTY}  # noqa: RUF012
+    says = {STOP: BOOLEAN, GO_ON: EMPTY}
 
     def __init__(self):
         self.pressed = self.silent = False
@@ -153,7 +153,7 @@ class Rotator(Device):
     """
 
     period = STEP
-    says = {"/rotate_done": EMPTY}  # noqa: RUF012
+    says = {"/rotate_done": EMPTY}
     fastest, precision, patience = 0.8, math.radians(0.05), 0.5
 
     def __init__(self, kind, by=90):

@@ -17,7 +17,7 @@ CELL = 1.0
 class Receiver(Device):
     """The position of the sprayer in the field."""
 
-    says = {"/odom": "nav_msgs/Odometry"}  # noqa: RUF012
+    says = {"/odom": "nav_msgs/Odometry"}
 
     def __init__(self, noise):
         """Create the receiver. `noise` returns an error in meters."""
@@ -40,7 +40,7 @@ class Radio(Device):
     """A radio that sends a heartbeat while it is in reach."""
 
     period = 0.2
-    says = {"/radio/heartbeat": EMPTY}  # noqa: RUF012
+    says = {"/radio/heartbeat": EMPTY}
 
     def __init__(self):
         self.in_reach = True
@@ -54,7 +54,7 @@ class Radio(Device):
 class Remote(Device):
     """A switch between manual and automatic driving, and a stick. A released stick sends no messages."""
 
-    says = {"/mode/automatic": BOOLEAN, "/stick": TWIST}  # noqa: RUF012
+    says = {"/mode/automatic": BOOLEAN, "/stick": TWIST}
 
     def __init__(self):
         self.automatic = False
@@ -77,11 +77,11 @@ class Boom(Device):
     A section reads the map a little ahead of its place, so that its valve has switched when it arrives there.
     """
 
-    says = {  # noqa: RUF012
+    says = {
         **{f"/nozzles/{section}/sprayed": BOOLEAN for section in SECTIONS},
         "/tank/level": NUMBER,
     }
-    hears = {f"/nozzles/{section}/valve": BOOLEAN for section in SECTIONS}  # noqa: RUF012
+    hears = {f"/nozzles/{section}/valve": BOOLEAN for section in SECTIONS}
     ahead, behind = 0.3, -0.4
     #: The consumption of an open section per second.
     flow = 0.001
@@ -143,7 +143,7 @@ class Driver(Device):
     It adds the events of goals to `events`, as `Navigation` does.
     """
 
-    serves = {ACTION: "nav2_msgs/NavigateToPose"}  # noqa: RUF012
+    serves = {ACTION: "nav2_msgs/NavigateToPose"}
     period = 0.2
     speed, turn_speed, tolerance = 1.0, 1.5, 0.15
 

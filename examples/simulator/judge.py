@@ -18,11 +18,11 @@ class Judge:
     """
 
     #: Commands of the agent, by topic, service or action: functions from random numbers and the time to data.
-    commands: dict = {}  # noqa: RUF012  # a constant table
+    commands: dict = {}
     #: Commands that the agent sends more or less often than others, by a factor.
-    weights: dict = {}  # noqa: RUF012
+    weights: dict = {}
     #: Topics on which the guard sends this stop when it blocks a command after it forwarded one.
-    replaced: dict = {}  # noqa: RUF012
+    replaced: dict = {}
 
     def __init__(self, time=0.0):
         self.time = time

@@ -25,8 +25,8 @@ class Navigation(Device):
     There is one goal at a time: a new one ends the previous one.
     """
 
-    serves = {ACTION: "nav2_msgs/NavigateToPose"}  # noqa: RUF012
-    hears = {"/initialpose": "geometry_msgs/PoseWithCovarianceStamped"}  # noqa: RUF012
+    serves = {ACTION: "nav2_msgs/NavigateToPose"}
+    hears = {"/initialpose": "geometry_msgs/PoseWithCovarianceStamped"}
     period = 0.2
     clearance = CLEARANCE
 

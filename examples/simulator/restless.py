@@ -179,8 +179,8 @@ class ButtonJudge(Judge):
 class WheelsJudge(ButtonJudge):
     """Velocities pass in service, and ahead only on a free way. They are limited."""
 
-    commands = {WHEELS: twist}  # noqa: RUF012
-    replaced = {WHEELS: STOP}  # noqa: RUF012
+    commands = {WHEELS: twist}
+    replaced = {WHEELS: STOP}
 
     def __init__(self, time=0.0):
         super().__init__(time)
@@ -213,7 +213,7 @@ class WheelsJudge(ButtonJudge):
 class TurnJudge(WheelsJudge):
     """While a device turns the robot, no other command passes."""
 
-    commands = {WHEELS: twist, LEFT: nothing, RIGHT: nothing}  # noqa: RUF012
+    commands = {WHEELS: twist, LEFT: nothing, RIGHT: nothing}
 
     def __init__(self, time=0.0):
         super().__init__(time)
@@ -244,7 +244,7 @@ def quarter(numbers, time):
 class QuarterJudge(TurnJudge):
     """As `TurnJudge`, and turns are quarters."""
 
-    commands = {WHEELS: twist, LEFT: quarter, RIGHT: quarter}  # noqa: RUF012
+    commands = {WHEELS: twist, LEFT: quarter, RIGHT: quarter}
 
     def permits(self, name, data):
         """Return whether a command may pass."""
@@ -254,8 +254,8 @@ class QuarterJudge(TurnJudge):
 class StepsJudge(ButtonJudge):
     """Steps pass while the line is in view, the way is clear and the robot is in service."""
 
-    commands = {STEP: twist}  # noqa: RUF012
-    replaced = {STEP: STOP}  # noqa: RUF012
+    commands = {STEP: twist}
+    replaced = {STEP: STOP}
 
     def __init__(self, time=0.0):
         super().__init__(time)
@@ -279,7 +279,7 @@ class StepsJudge(ButtonJudge):
 class NavigationJudge(ButtonJudge):
     """One goal for each click, after the robot was located. A new click or a pressed button ends it."""
 
-    commands = {NAVIGATE: destination(4.0, 3.0)}  # noqa: RUF012
+    commands = {NAVIGATE: destination(4.0, 3.0)}
     most_recoveries = math.inf
 
     def __init__(self, time=0.0):
@@ -347,14 +347,14 @@ def home(numbers, time):
 class WarehouseJudge(ButtonJudge):
     """No shelf among people, one movement at a time, slow where something is near."""
 
-    commands = {  # noqa: RUF012
+    commands = {
         NAVIGATE: destination(8.0, 3.0),
         LIMIT: speed_limit,
         DOCK: home,
         UNDOCK: nothing,
         **dict.fromkeys((RAISE, LOWER, ENTER, LEAVE), nothing),
     }
-    weights = {LIMIT: 0.1, NAVIGATE: 2.0, DOCK: 0.1, LEAVE: 0.3, RAISE: 0.3}  # noqa: RUF012
+    weights = {LIMIT: 0.1, NAVIGATE: 2.0, DOCK: 0.1, LEAVE: 0.3, RAISE: 0.3}
     views = ("/front/scan", "/rear/scan")
 
     def __init__(self, time=0.0):
@@ -444,8 +444,8 @@ def valve(numbers, time):
 class SprayerJudge(ButtonJudge):
     """By itself within the field, by hand in manual mode, and spray only in the field."""
 
-    commands = {WHEELS: twist, NAVIGATE: destination(110.0, 50.0), **dict.fromkeys(VALVES, valve)}  # noqa: RUF012
-    replaced = {WHEELS: STOP, **{name: {"data": False} for name in VALVES}}  # noqa: RUF012
+    commands = {WHEELS: twist, NAVIGATE: destination(110.0, 50.0), **dict.fromkeys(VALVES, valve)}
+    replaced = {WHEELS: STOP, **{name: {"data": False} for name in VALVES}}
 
     def __init__(self, time=0.0):
         super().__init__(time)

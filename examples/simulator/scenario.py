@@ -19,10 +19,10 @@ class Scenario:
     #: The model of the controller behind the supervisory layer, if there is one, in the example's folder.
     controller: str | None = None
     #: Topics on which people send messages, apart from buttons, with their types.
-    people: dict[str, str] = {}  # noqa: RUF012  # a constant table
+    people: dict[str, str] = {}
     #: Services and actions of the controller that people and programs call, with their types.
-    calls: dict[str, str] = {}  # noqa: RUF012
-    goals: dict[str, str] = {}  # noqa: RUF012
+    calls: dict[str, str] = {}
+    goals: dict[str, str] = {}
     #: A topic on which the controller reports at each tick that it is alive, if its commands do not show that.
     alive: str | None = None
     #: Pixels per meter in the picture.

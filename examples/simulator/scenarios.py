@@ -91,7 +91,7 @@ class SimpleNavigation(Scenario):
     """An empty room with a map and two destinations: a stop on the first way, a change of plan on the second."""
 
     name = "simple_navigation"
-    people = {  # noqa: RUF012
+    people = {
         "/initialpose": "geometry_msgs/PoseWithCovarianceStamped",
         "/clicked_point": "geometry_msgs/PointStamped",
     }
@@ -353,9 +353,9 @@ class WarehouseRobot(Scenario):
     """A hall with a dock, a shelf, and between them an aisle in which people walk."""
 
     name = "warehouse_robot"
-    calls = {"/fetch_again": TRIGGER}  # noqa: RUF012
-    goals = {"/fetch": "nav2_msgs/NavigateToPose"}  # noqa: RUF012
-    people = {  # noqa: RUF012
+    calls = {"/fetch_again": TRIGGER}
+    goals = {"/fetch": "nav2_msgs/NavigateToPose"}
+    people = {
         "/order": "geometry_msgs/PoseStamped",
         "/served": EMPTY,
         "/dock/again": EMPTY,
@@ -481,7 +481,7 @@ class Sprayer(Scenario):
     """The corner of a field: two rows, the second past the field's end, and a way across sprayed ground."""
 
     name = "sprayer"
-    people = {"/route": "nav_msgs/Path"}  # noqa: RUF012
+    people = {"/route": "nav_msgs/Path"}
     scale = 40
     patience = 300.0
     #: The field's edges are 100 m and 40 m from its middle.

@@ -33,7 +33,7 @@ class Server(Device):
 class SafetyLidars(Device):
     """Two lidars, ahead and behind, each with rays every other degree over 60 degrees. `silent`: disconnected ones."""
 
-    says = {"/front/scan": "sensor_msgs/LaserScan", "/rear/scan": "sensor_msgs/LaserScan"}  # noqa: RUF012
+    says = {"/front/scan": "sensor_msgs/LaserScan", "/rear/scan": "sensor_msgs/LaserScan"}
     #: The rays in degrees from the middle.
     rays = range(-30, 31, 2)
 
@@ -67,7 +67,7 @@ class SafetyLidars(Device):
 class Bumpers(Device):
     """Four switches around the robot. `pressed`: the touched ones."""
 
-    says = {f"/{side}/bumper": BOOLEAN for side in ("front", "rear", "left", "right")}  # noqa: RUF012
+    says = {f"/{side}/bumper": BOOLEAN for side in ("front", "rear", "left", "right")}
 
     def __init__(self):
         self.pressed = set()
@@ -82,7 +82,7 @@ class Battery(Device):
     """A battery, discharged on the way and charged in the dock. Faster than real ones, for short simulations."""
 
     period = 0.2
-    says = {"/battery_state": "sensor_msgs/BatteryState"}  # noqa: RUF012
+    says = {"/battery_state": "sensor_msgs/BatteryState"}
     per_metre, per_second = 0.004, 0.05
 
     def __init__(self, docking, charge):
@@ -105,7 +105,7 @@ class Battery(Device):
 class Lift(Server):
     """A lift below a shelf that moves up or down in a second and a half. `jams`: how often it will not come down."""
 
-    answers = {"/lift/raise": TRIGGER, "/lift/lower": TRIGGER}  # noqa: RUF012
+    answers = {"/lift/raise": TRIGGER, "/lift/lower": TRIGGER}
     takes = 1.5
 
     def __init__(self):
@@ -141,7 +141,7 @@ class Lift(Server):
 class AisleManager(Server):
     """A manager that lets robots into the aisle while people leave room there."""
 
-    answers = {"/aisle/enter": TRIGGER, "/aisle/leave": TRIGGER}  # noqa: RUF012
+    answers = {"/aisle/enter": TRIGGER, "/aisle/leave": TRIGGER}
     takes = 0.3
 
     def __init__(self):
@@ -223,7 +223,7 @@ class DockServer(Device):
 class Docking(DockServer):
     """Drives the robot into its dock. `refusals`: how often it will not."""
 
-    serves = {"/dock_robot": "nav2_msgs/DockRobot"}  # noqa: RUF012
+    serves = {"/dock_robot": "nav2_msgs/DockRobot"}
     words = "in the dock"
 
     def __init__(self, place):
@@ -254,7 +254,7 @@ class Docking(DockServer):
 class Undocking(DockServer):
     """Drives the robot off its dock."""
 
-    serves = {"/undock_robot": "nav2_msgs/UndockRobot"}  # noqa: RUF012
+    serves = {"/undock_robot": "nav2_msgs/UndockRobot"}
     words = "off the dock"
 
     def __init__(self, docking):
@@ -272,7 +272,7 @@ class Undocking(DockServer):
 class WarehouseNavigation(Navigation):
     """Nav2 that knows the robot's start, keeps more distance from obstacles, and obeys a speed limit."""
 
-    hears = {"/speed_limit": "nav2_msgs/SpeedLimit"}  # noqa: RUF012
+    hears = {"/speed_limit": "nav2_msgs/SpeedLimit"}
     clearance = 0.65
     #: The creeping speed without a limit, and near the goal.
     creep = 0.2

@@ -407,7 +407,7 @@ def _unused(configuration: Configuration) -> Iterator[Diagnostic]:
     """Return warnings on settings without effect on a layer."""
     settings = {
         "retryMs": configuration.retry_ms != Configuration().retry_ms,
-        "frameId": configuration.frame_id,
+        "frameId": configuration.frame_id and not configuration.on_blocked,
         "watchdogMs": configuration.watchdog_ms,
         "watchdogStops": configuration.watchdog_stops,
         "onShutdown": configuration.on_shutdown,

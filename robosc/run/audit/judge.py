@@ -97,7 +97,6 @@ class Judge(EventHandler):
         self._composer = Composer(port, self._data)
         self._shared = SharedTopics(port, self._composer)
         self._safe = safe_messages(graph, settings.configuration)
-        self._names = {event: name for name, event in self._events.items()}
         self._origins = {event: plant_of(event).origin or plant_of(event).name for event in self._names}
         #: Topic of the present message.
         self.topic = ""

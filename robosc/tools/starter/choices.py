@@ -12,20 +12,10 @@ _COMMUNICATION = re.compile(r"[a-z][a-z0-9]*(?:_[a-z0-9]+)*")
 
 
 @dataclass(frozen=True)
-class Choices:
-    """A robot's name, its ROS (1 or 2), and the names of its inputs and outputs.
-
-    `sensors` are messages that report whether `command` may be sent; while it may not, `stop` is sent. `service` is
-    called once, before anything else. With `twist`, both commands are velocities.
-    """
+class RobotName:
+    """Name of a robot as the user writes it."""
 
     name: str
-    ros: int = 2
-    sensors: tuple[str, ...] = ("clear",)
-    command: str = "drive"
-    stop: str | None = "halt"
-    service: str | None = None
-    twist: bool = False
 
     @property
     def robot(self) -> str:
@@ -36,6 +26,22 @@ class Choices:
     def stem(self) -> str:
         """The robot's name in snake case, for its folder and files."""
         return snake_case(self.robot)
+
+
+@dataclass(frozen=True)
+class Choices(RobotName):
+    """A robot's name, its ROS (1 or 2), and the names of its inputs and outputs.
+
+    `sensors` are messages that report whether `command` may be sent; while it may not, `stop` is sent. `service` is
+    called once, before anything else. With `twist`, both commands are velocities.
+    """
+
+    ros: int = 2
+    sensors: tuple[str, ...] = ("clear",)
+    command: str = "drive"
+    stop: str | None = "halt"
+    service: str | None = None
+    twist: bool = False
 
     @property
     def package(self) -> str:

@@ -255,6 +255,14 @@ def test_settings_that_mean_nothing_to_a_layer(usher: robosc.Models) -> None:
     assert [finding.message.split()[0] for finding in found] == ['"retryMs"', '"watchdogMs"', '"onShutdown"']
 
 
+def test_frames_have_an_effect_only_on_the_messages_of_a_layer(usher: robosc.Models) -> None:
+    frames = {"frameId": {"speed": "base"}}
+    (found,) = TARGETS[TARGET].findings(usher, Configuration.model_validate(frames))
+    assert found.message.startswith('"frameId" has no effect')
+    sending = Configuration.model_validate({**frames, "onBlocked": ["speed"]})
+    assert [found for found in TARGETS[TARGET].findings(usher, sending) if "frameId" in found.message] == []
+
+
 def test_the_readme_of_a_layer_describes_no_managed_node(usher: robosc.Models) -> None:
     settings = Configuration.model_validate({"lifecycle": {"bond": True}})
     assert robosc.generate(TARGET, usher, settings)["README.md"] == robosc.generate(TARGET, usher)["README.md"]

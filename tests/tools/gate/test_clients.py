@@ -44,6 +44,14 @@ def calls(folder: Path) -> list[dict[str, Any]]:
     return [json.loads(line) for line in (folder / "calls.jsonl").read_text(encoding="utf-8").splitlines()]
 
 
+def test_a_gate_uses_the_frames_of_headers(tmp_path: Path) -> None:
+    settings = tmp_path / "settings.json"
+    settings.write_text('{"retryMs": 5, "frameId": {"go_to": "map"}}')
+    program = command(tmp_path, "--config", str(settings))
+    done = subprocess.run(program, input="", capture_output=True, text=True, check=True, timeout=_PATIENCE)
+    assert re.findall(r'warning: "(\w+)" has no effect', done.stderr) == ["retryMs"]
+
+
 def test_a_client_on_standard_input(tmp_path: Path) -> None:
     script = tmp_path / "script.jsonl"
     script.write_text('{"event": "Person.seen", "data": {"data": true}}\n', encoding="utf-8")

@@ -9,7 +9,7 @@ from functools import cached_property
 from robosc.base.node_graph import KINDS
 from robosc.base.ros_types.wire import FOLDERS
 from robosc.model.semantics.naming import ROBOSC_FUNCTIONS, ROBOSC_KEYWORDS, ROBOSC_QUANTIFIERS, snake_case
-from robosc.tools.starter.choices import camel, robot_fault
+from robosc.tools.starter.choices import RobotName, robot_fault
 
 #: Kinds of ROS types, by the kind of the name that has them.
 TYPE_KINDS = {"topic": "message", "service": "service", "action": "action"}
@@ -45,29 +45,18 @@ class Command:
 
 
 @dataclass(frozen=True)
-class GuardChoices:
+class GuardChoices(RobotName):
     """A robot's name, and its topics, services and actions, each as NAME:TYPE.
 
     `button` is `periodic` or `latched`: whether the emergency stop repeats its state. `pose` is the topic of the
     localization, without which no goal passes.
     """
 
-    name: str
     topics: tuple[str, ...] = ()
     services: tuple[str, ...] = ()
     actions: tuple[str, ...] = ()
     button: str = "periodic"
     pose: str | None = None
-
-    @property
-    def robot(self) -> str:
-        """The robot's name as the model writes it: `MyRobot` for `my_robot`."""
-        return camel(self.name)
-
-    @property
-    def stem(self) -> str:
-        """The robot's name in snake case, for its folder and files."""
-        return snake_case(self.robot)
 
     @property
     def package(self) -> str:
