@@ -67,6 +67,29 @@ def test_a_client_on_standard_input(tmp_path: Path) -> None:
     assert [entry["verdict"] for entry in calls(tmp_path)] == ["refused", "happened", "accepted", "released"]
 
 
+def test_a_new_guard_limits_and_refuses(tmp_path: Path) -> None:
+    """The guard of `robosc new --guard` in front of a dry robot."""
+    folder = tmp_path / "guard"
+    assert CliRunner().invoke(main, ["new", "Porter", "--guard", "--yes", "-o", str(folder)]).exit_code == 0
+    arguments = ["-m", "robosc", "gate", str(folder / "porter.rscd"), "--dry", "--log", str(tmp_path / "calls.jsonl")]
+
+    async def drive() -> None:
+        parameters = StdioServerParameters(command=sys.executable, args=arguments, env=dict(os.environ))
+        async with Client(parameters) as client:
+            refused = await call(client, "Commands_cmd_vel", linear={"x": 0.25})
+            assert (refused["verdict"], refused["reason"]) == ("refused", "requirement")
+            limited = refused
+            while limited["verdict"] == "refused":  # a slow machine loses the button, which must repeat
+                await call(client, "robot", event="EmergencyStop.pressed", data={"data": False})
+                await call(client, "robot", event="EmergencyStop.continue")
+                limited = await call(client, "Commands_cmd_vel", linear={"x": 9.0})
+            assert (limited["verdict"], limited["sent"]["linear"]["x"]) == ("limited", 0.5)
+            await call(client, "robot", event="EmergencyStop.pressed", data={"data": True})
+            assert (await call(client, "Commands_cmd_vel", linear={"x": 0.25}))["verdict"] == "refused"
+
+    asyncio.run(asyncio.wait_for(drive(), _PATIENCE))
+
+
 def test_a_script_repeats_an_event_until_its_next_line(tmp_path: Path) -> None:
     caused: list[Any] = []
     event = RobotEvent("Person.seen", Fields({"data": Flag()}), caused.append)
